@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lbm_solver/coupling/observers.h"
+#include "protocol/session.h"
+
+namespace lbm {
+
+struct RunOptions {
+  std::string out = "out";                ///< folder of all output; created where missing
+  std::optional<double> until;            ///< stop at this time [s] instead of the scene's end
+  std::string set = "resolved", variant;  ///< names for the summary
+};
+
+/// Runs a coupled scene to its end and writes its summary.
+/// @throws ProtocolError and its kinds; what was written until then stays
+Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& channel,
+                    const RunOptions& options, Log& log);
+
+}  // namespace lbm

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/coupling/report.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+namespace lbm {
+namespace {
+
+const char* text(SideKind s) {
+  return s == SideKind::Wall ? "wall" : "periodic";
+}
+
+const char* buoyancy_text(protocol::Buoyancy b) {
+  switch (b) {
+    case protocol::Buoyancy::ByFluid:
+      return "added to the load by the fluid";
+    case protocol::Buoyancy::BySolid:
+      return "added by the solid";
+    case protocol::Buoyancy::None:
+      break;
+  }
+  return "off";
+}
+
+/// Seconds a fluid step takes, by doing some for a tenth of a second.
+double measure_step(Fluid& fluid, const std::vector<Disc>& discs) {
+  using Clock = std::chrono::steady_clock;
+  fluid.place(discs);
+  fluid.step();
+  const auto start = Clock::now();
+  int steps = 0;
+  double seconds = 0.0;
+  do {
+    fluid.place(discs);
+    fluid.step();
+    if (fluid.loads().size() != discs.size()) break;
+    seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    ++steps;
+  } while (seconds < 0.1);
+  return seconds / steps;
+}
+
+}  // namespace
+
+std::string describe(const Scene& s, const Plan& p) {
+  std::string out = fmt::format("scene        {} ({})\n", s.title, s.file);
+  const auto line = [&out](const char* name, const std::string& value) {
+    out += fmt::format("{:<12} {}\n", name, value);
+  };
+  line("box", fmt::format("{:.6g} × {:.6g} m, depth {:.6g} m, sides x {}, y {}", s.box.size.x(),
+                          s.box.size.y(), s.box.depth, text(s.box.x), text(s.box.y)));
+  line("grid", fmt::format("{} × {} cells of {:.6g} m", p.domain.nx, p.domain.ny, p.units.dx));
+  line("fluid step", fmt::format("Δt = {:.6g} s, C = Δx/Δt = {:.6g} m/s [{}]", p.units.dt,
+                                 p.lattice_speed, p.step_limit));
+  line("fluid", fmt::format("ρ {:.6g} kg/m³, ν {:.6g} m²/s, τ = {:.6g}", s.fluid.density,
+                            s.fluid.viscosity, p.kernel.tau));
+  line("numbers",
+       fmt::format("Re {:.4g}, Re_h {:.3g}, Ma = u/c_s {:.3g}, u/C {:.3g} at u = {:.4g} m/s",
+                   p.reynolds, p.reynolds_cell, p.u_over_c * std::numbers::sqrt3, p.u_over_c,
+                   s.fluid.velocity_scale));
+  if (s.particles)
+    line("particles",
+         fmt::format("D {:.6g} … {:.6g} m, D/Δx {:.4g}, ρ {:.6g} … {:.6g} kg/m³",
+                     s.particles->diameter.lo, s.particles->diameter.hi, p.cells_per_diameter,
+                     s.particles->density.lo, s.particles->density.hi));
+  if (s.coupling)
+    line("coupling",
+         fmt::format("interval {:.6g} s = {} fluid step(s) = {} solid steps of {:.4g} s [{}]",
+                     p.interval(), p.fluid_steps, p.substeps, p.interval() / p.substeps,
+                     p.substep_limit));
+  line("duration", fmt::format("{:.6g} s = {} intervals", s.end_time, p.intervals));
+  for (const std::string& w : p.warnings) line("warning", w);
+  return out;
+}
+
+std::string describe_cost(const Scene& s, const Plan& p) {
+  std::string out = fmt::format(
+      "on           collision {}, half-way walls {}, covered cells {} with B(ε,τ), loads, inner "
+      "fluid's "
+      "inertia {}, buoyancy {}\n",
+      p.kernel.collision, s.box.x == SideKind::Wall || s.box.y == SideKind::Wall ? "on" : "off",
+      p.kernel.solid_term, s.coupling && s.coupling->inner_inertia ? "on" : "off",
+      s.coupling ? buoyancy_text(s.coupling->buoyancy) : "off");
+  out += "off          body force, turbulence model, 3D\n";
+  Fluid fluid(p.domain, p.kernel);
+  if (!fluid.has_solids()) return out;
+  std::vector<Disc> discs;
+  for (const Vec2& x : s.particles->start)
+    discs.push_back({static_cast<std::int64_t>(discs.size() + 1),
+                     p.units.to_lattice_position(x),
+                     0.5 * s.particles->diameter.hi / p.units.dx,
+                     {0.0, 0.0},
+                     0.0});
+  const double step = measure_step(fluid, discs);
+  const double cells = static_cast<double>(p.domain.nx) * p.domain.ny;
+  const double total = step * static_cast<double>(p.intervals) * p.fluid_steps;
+  out += fmt::format(
+      "cost         {:.3g} MB; {:.3g} s of fluid at the {:.0f} million updates/s just measured, "
+      "one thread; the "
+      "solid's time comes on top\n",
+      static_cast<double>(fluid.bytes()) * 1e-6, total, cells / step * 1e-6);
+  return out;
+}
+
+std::string describe(const Summary& s) {
+  std::string out = fmt::format(
+      "ending       {}\n"
+      "made         {} steps of {} cells, {:.6g} s, in {:.3g} s: {:.1f} million updates/s\n"
+      "largest      Ma = u/c_s {:.3g}, u/C {:.3g}; mass drift {:.2g}\n"
+      "time         ",
+      s.ending, s.steps, s.cells, s.physical_seconds, s.wall_seconds, s.mlups, s.ma_max, s.ma_paper,
+      s.mass_drift);
+  for (const auto& [part, share] : s.time_share)
+    out += fmt::format("{} {:.0f} %  ", part, 100.0 * share);
+  return out;
+}
+
+}  // namespace lbm

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/immersed/footprint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lbm_solver/immersed/disc_fraction.h"
+
+namespace lbm {
+namespace {
+
+/// Fractions within one row are all 0 beyond `outer` and all 1 within `inner` (half diagonal 0.71).
+constexpr double kHalfDiagonal = 0.7072;
+
+/// First image of coordinate `at` that may touch [0, n], and how many images do.
+struct Images {
+  double first;
+  int count;
+};
+Images images(double at, double radius, int n, Side side) {
+  if (side == Side::Wall) return {at, 1};
+  const double lowest = at - std::floor((at + radius) / n) * n;  // in [-radius, n - radius)
+  return {lowest, lowest + n - radius < n ? 2 : 1};
+}
+
+}  // namespace
+
+bool Footprint::update(const Disc& disc, const Domain& domain) {
+  if (disc.centre == centre_ && disc.radius == radius_) return false;
+  centre_ = disc.centre;
+  radius_ = disc.radius;
+  spans_.clear();
+  fractions_.clear();
+  const Images x = images(disc.centre.x(), disc.radius, domain.nx, domain.x);
+  const Images y = images(disc.centre.y(), disc.radius, domain.ny, domain.y);
+  for (int j = 0; j < y.count; ++j)
+    for (int i = 0; i < x.count; ++i)
+      add_image({x.first + i * domain.nx, y.first + j * domain.ny}, disc.radius, domain);
+  return true;
+}
+
+void Footprint::add_image(const Vec2& centre, double radius, const Domain& domain) {
+  const auto clip = [](double v, int n) {
+    return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(n)));
+  };
+  const double inner = std::max(0.0, radius - kHalfDiagonal);
+  const double core = std::max(0.0, radius - kCoreDepth);
+  const int y_begin = clip(std::floor(centre.y() - radius), domain.ny);
+  const int y_end = clip(std::ceil(centre.y() + radius), domain.ny);
+  for (int y = y_begin; y < y_end; ++y) {
+    const double dy = y + 0.5 - centre.y();
+    const double near = std::max(0.0, std::abs(dy) - 0.5);  // closest approach of the row
+    const double half = std::sqrt(std::max(0.0, radius * radius - near * near));
+    const int x_begin = clip(std::floor(centre.x() - half), domain.nx);
+    const int x_end = clip(std::ceil(centre.x() + half), domain.nx);
+    if (x_begin >= x_end) continue;
+    const double core2 = core * core - dy * dy, half_core = core2 > 0.0 ? std::sqrt(core2) : 0.0;
+    const double first_arm = x_begin + 0.5 - centre.x();
+    const auto clip_core = [&](double arm) {
+      return std::clamp(static_cast<int>(std::ceil(arm - first_arm)), 0, x_end - x_begin);
+    };
+    spans_.push_back({x_begin, y, x_end - x_begin, static_cast<int>(fractions_.size()),
+                      clip_core(-half_core), clip_core(half_core), first_arm, dy});
+    const double full2 = inner * inner - dy * dy;
+    for (int x = x_begin; x < x_end; ++x) {
+      const double dx = x + 0.5 - centre.x();
+      fractions_.push_back(dx * dx < full2 ? 1.0 : disc_fraction(dx, dy, radius));
+    }
+  }
+}
+
+}  // namespace lbm

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "lbm_solver/field/populations.h"
+#include "lbm_solver/immersed/disc.h"
+
+namespace lbm {
+
+/// Extent of the lattice and what its sides do; where images of a disc can be.
+struct Domain {
+  int nx = 0, ny = 0;
+  Side x = Side::Wall, y = Side::Wall;
+};
+
+/// Cells whose centre lies deeper than this below the surface are the core of a solid, in cells:
+/// the surface cells (0.71) and the layer of whole cells that bounds the flow outside are above it.
+inline constexpr double kCoreDepth = 2.0;
+
+/// The cells that one disc covers, as row spans of solid fractions, its periodic images included.
+class Footprint {
+ public:
+  struct Span {
+    int x, y;                  ///< first cell, inside the lattice
+    int count;                 ///< cells
+    int eps;                   ///< index of the first fraction in `fractions`
+    int core_begin, core_end;  ///< cells of the core, counted from the first cell
+    double arm_x, arm_y;  ///< centre of the first cell minus centre of the image that covers it
+  };
+
+  /// Computes the spans anew unless the disc is where it was.
+  /// @return whether anything changed
+  bool update(const Disc& disc, const Domain& domain);
+
+  const std::vector<Span>& spans() const { return spans_; }
+  const std::vector<double>& fractions() const { return fractions_; }
+
+ private:
+  void add_image(const Vec2& centre, double radius, const Domain& domain);
+  Vec2 centre_{0.0, 0.0};
+  double radius_ = -1.0;
+  std::vector<Span> spans_;
+  std::vector<double> fractions_;
+};
+
+}  // namespace lbm

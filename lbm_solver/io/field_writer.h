@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lbm_solver/base/units.h"
+
+namespace lbm {
+
+/// One picture of the fluid and its particles, SI units.
+struct FieldFrame {
+  double time = 0.0;  ///< [s]
+  int nx = 0, ny = 0;
+  std::vector<float> pressure;        ///< [ny][nx], against rest and hydrostatic [Pa]
+  std::vector<float> velocity;        ///< [ny][nx][3] [m/s]
+  std::vector<float> solid_fraction;  ///< [ny][nx]; empty without solids
+  std::vector<double> particles;      ///< [n][8]: id, x, y, radius, vx, vy, omega, type
+};
+
+/// Writes frames to `fields.h5` and keeps `fields.xdmf` beside it, which ParaView opens. The file
+/// is closed after every frame: a kill loses at most the frame in progress.
+class FieldWriter {
+ public:
+  /// @param folder  must exist
+  FieldWriter(const std::string& folder, const Units& units);
+  void write(const FieldFrame& frame);
+
+ private:
+  void write_xdmf() const;
+  struct Entry {
+    double time;
+    int nx, ny;
+    bool solids;
+  };
+  std::string folder_;
+  Units units_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace lbm

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/io/scene_reader.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/table_reader.h"
+
+namespace lbm {
+namespace {
+
+toml::table parse(const std::string& file) {
+  if (!std::filesystem::is_regular_file(file))
+    throw InputError(file, "no such file",
+                     "give the path of a scene, e.g. cases/settling_disc/scene.toml");
+  try {
+    return toml::parse_file(file);
+  } catch (const toml::parse_error& e) {
+    throw InputError(fmt::format("{}:{}", file, e.source().begin.line),
+                     std::string(e.description()), "correct the TOML syntax");
+  }
+}
+
+/// Lays `over` over `base`: tables are merged, everything else is replaced. Nodes are moved,
+/// because a copy forgets the file and line it came from.
+void overlay(toml::table& base, toml::table&& over) {
+  for (auto&& [key, node] : over) {
+    toml::node* below = base.get(key);
+    if (below && below->is_table() && node.is_table())
+      overlay(*below->as_table(), std::move(*node.as_table()));
+    else
+      node.visit([&](auto& value) { base.insert_or_assign(key, std::move(value)); });
+  }
+}
+
+SideKind side(TableReader& t, const std::string& key) {
+  return t.choice_or(key, "wall", {"wall", "periodic"}) == "wall" ? SideKind::Wall
+                                                                  : SideKind::Periodic;
+}
+
+BoxScene read_box(TableReader t) {
+  BoxScene box;
+  box.size = t.vector("size", "[m]");
+  if (box.size.minCoeff() <= 0.0)
+    t.fail("size", fmt::format("= [{}, {}] is not positive", box.size.x(), box.size.y()),
+           "give the lengths of the box [x, y] in m");
+  box.origin = t.vector_or("origin", {0.0, 0.0}, "[m]");
+  box.depth = t.number_or("depth", 1.0, Bounds::positive(), "m");
+  box.x = side(t, "sides_x");
+  box.y = side(t, "sides_y");
+  t.finish();
+  return box;
+}
+
+FluidScene read_fluid(TableReader t) {
+  FluidScene fluid;
+  fluid.density = t.number("density", Bounds::positive(), "kg/m³");
+  fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
+  fluid.gravity = t.vector_or("gravity", {0.0, 0.0}, "[m/s²]");
+  fluid.velocity_scale = t.number("velocity_scale", Bounds::positive(), "m/s");
+  t.finish();
+  return fluid;
+}
+
+NumericsScene read_numerics(TableReader t) {
+  NumericsScene n;
+  n.cell = t.optional_number("cell", Bounds::positive(), "m");
+  n.cells_per_diameter = t.optional_number("cells_per_diameter", {2.0, 10000.0}, "cells");
+  if (n.cell.has_value() == n.cells_per_diameter.has_value())
+    t.fail("cell", n.cell ? "stands beside cells_per_diameter" : "is missing",
+           "give either cell [m] or cells_per_diameter");
+  n.time_step = t.optional_number("time_step", Bounds::positive(), "s");
+  n.collision = t.choice_or("collision", "trt", {"bgk", "trt"});
+  n.magic = t.number_or("magic", n.magic, {1e-6, 10.0}, "");
+  t.finish();
+  return n;
+}
+
+ParticleScene read_particles(TableReader t) {
+  ParticleScene p;
+  p.diameter = t.range("diameter", Bounds::positive(), "m");
+  p.density = t.range("density", Bounds::positive(), "kg/m³");
+  p.start = t.vectors_or_none("start", "[m]");
+  p.contact_stiffness = t.optional_number("contact_stiffness", Bounds::positive(), "N/m");
+  p.variables = t.optional_table("variables").all_as_text();
+  t.finish();
+  return p;
+}
+
+CouplingScene read_coupling(TableReader t) {
+  CouplingScene c;
+  c.solid_term =
+      t.choice_or("solid_term", c.solid_term, {"layered_holdych", "holdych", "noble_torczynski"});
+  c.fluid_steps = t.optional_integer("fluid_steps", 1).value_or(1);
+  c.substeps = t.optional_integer("substeps", 1);
+  c.inner_inertia = t.flag_or("inner_inertia", true);
+  const std::string by = t.choice_or("buoyancy", "fluid", {"fluid", "solid", "none"});
+  c.buoyancy = by == "fluid"   ? protocol::Buoyancy::ByFluid
+               : by == "solid" ? protocol::Buoyancy::BySolid
+                               : protocol::Buoyancy::None;
+  c.timeout = t.number_or("timeout", c.timeout, Bounds::positive(), "s");
+  t.finish();
+  return c;
+}
+
+}  // namespace
+
+Scene read_scene(const std::vector<std::string>& files) {
+  toml::table merged = parse(files.front());
+  for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
+  TableReader root(merged, "", files.front());
+  Scene scene;
+  scene.file = files.front();
+  scene.title = root.text_or("title", std::filesystem::path(files.front()).stem().string());
+  scene.box = read_box(root.table("box"));
+  scene.fluid = read_fluid(root.table("fluid"));
+  scene.numerics = read_numerics(root.table("numerics"));
+  if (root.has("particles")) scene.particles = read_particles(root.table("particles"));
+  if (root.has("coupling")) scene.coupling = read_coupling(root.table("coupling"));
+  if (scene.coupling && !scene.particles)
+    root.fail("particles", "is missing", "[coupling] needs a table [particles]");
+  TableReader run = root.table("run");
+  scene.end_time = run.number("end_time", Bounds::positive(), "s");
+  run.finish();
+  TableReader output = root.optional_table("output");
+  scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
+  scene.output.probe_every = output.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
+  output.finish();
+  root.finish();
+  return scene;
+}
+
+}  // namespace lbm

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lbm_solver/base/scene.h"
+
+namespace lbm {
+
+/// Reads a scene file and lays overlays over it, key by key, in order.
+/// @param files  the scene, then its overlays
+/// @throws InputError with file and line: not found, no TOML, unknown or missing key, wrong type,
+///         value outside its range
+Scene read_scene(const std::vector<std::string>& files);
+
+}  // namespace lbm

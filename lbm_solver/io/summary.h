@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lbm {
+
+/// What remains of a run: written as `summary.json`, where a scene's plot script adds its results.
+struct Summary {
+  std::string scene, set, variant;
+  std::map<std::string, std::string> versions;
+  std::string ending;  ///< "complete", or who stopped and why
+  long cells = 0;
+  long steps = 0;    ///< fluid steps made
+  int substeps = 1;  ///< solid steps a coupling interval
+  double physical_seconds = 0.0, wall_seconds = 0.0, cpu_seconds = 0.0;
+  double mlups = 0.0;  ///< million lattice updates a second of wall time, everything included
+  std::map<std::string, double> time_share;  ///< part -> fraction of the wall time
+  double waiting = 0.0;                      ///< seconds spent waiting for the solid
+  double ma_max = 0.0;                       ///< max |u| / c_s
+  double ma_paper = 0.0;                     ///< max |u| / C
+  double re = 0.0, re_h = 0.0;
+  double mass_drift = 0.0;                   ///< relative
+  std::map<std::string, double> parameters;  ///< what a reader needs to interpret the results
+};
+
+/// Writes `folder`/summary.json, whole or not at all.
+void write_summary(const std::string& folder, const Summary& summary);
+
+}  // namespace lbm

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/io/table_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "lbm_solver/base/errors.h"
+
+namespace lbm {
+namespace {
+
+std::string shown(const toml::node& node) {
+  if (node.is_floating_point()) return fmt::format("{}", *node.value<double>());
+  std::ostringstream text;
+  node.visit([&text](const auto& n) { text << n; });
+  return text.str();
+}
+
+const toml::table& no_table() {
+  static const toml::table empty;
+  return empty;
+}
+
+std::string bounds_text(const Bounds& b, const std::string& unit) {
+  const std::string u = unit.empty() ? "" : " " + unit;
+  if (b.exclusive && b.lo == 0.0 && std::isinf(b.hi)) return "a positive number" + u;
+  if (std::isinf(b.hi)) return fmt::format("a number of at least {}{}", b.lo, u);
+  return fmt::format("a number from {} to {}{}", b.lo, b.hi, u);
+}
+
+}  // namespace
+
+TableReader::TableReader(const toml::table& table, std::string path, std::string file)
+    : table_(table), path_(std::move(path)), file_(std::move(file)) {}
+
+std::string TableReader::where(const toml::node* node, const std::string& key) const {
+  const std::string full = path_.empty() ? key : path_ + "." + key;
+  const toml::source_region& source = node ? node->source() : table_.source();
+  if (!source.path || source.begin.line == 0) return fmt::format("{}: {}", file_, full);
+  return fmt::format("{}:{}: {}", *source.path, source.begin.line, full);
+}
+
+void TableReader::fail(const std::string& key, const std::string& problem,
+                       const std::string& remedy) const {
+  throw InputError(where(table_.get(key), key) + " " + problem, remedy);
+}
+
+const toml::node* TableReader::find(const std::string& key) {
+  asked_.insert(key);
+  return table_.get(key);
+}
+
+const toml::node& TableReader::need(const std::string& key, const std::string& what) {
+  const toml::node* node = find(key);
+  if (!node) throw InputError(where(nullptr, key) + " is missing", "give " + what);
+  return *node;
+}
+
+TableReader TableReader::table(const std::string& key) {
+  const toml::node& node = need(key, "a table [" + key + "]");
+  if (!node.is_table()) fail(key, "= " + shown(node) + " is no table", "write [" + key + "]");
+  return {*node.as_table(), path_.empty() ? key : path_ + "." + key, file_};
+}
+
+TableReader TableReader::optional_table(const std::string& key) {
+  asked_.insert(key);
+  if (has(key)) return table(key);
+  return {no_table(), path_.empty() ? key : path_ + "." + key, file_};
+}
+
+double TableReader::to_number(const toml::node& node, const std::string& key, const Bounds& bounds,
+                              const std::string& unit) const {
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  const bool inside = value && std::isfinite(*value) &&
+                      (bounds.exclusive ? *value > bounds.lo && *value < bounds.hi
+                                        : *value >= bounds.lo && *value <= bounds.hi);
+  if (!inside) {
+    const std::string problem = value ? "is out of range" : "is not a number";
+    throw InputError(where(&node, key) + fmt::format(" = {} {}", shown(node), problem),
+                     "give " + bounds_text(bounds, unit));
+  }
+  return *value;
+}
+
+double TableReader::number(const std::string& key, const Bounds& bounds, const std::string& unit) {
+  return to_number(need(key, bounds_text(bounds, unit)), key, bounds, unit);
+}
+double TableReader::number_or(const std::string& key, double fallback, const Bounds& bounds,
+                              const std::string& unit) {
+  return optional_number(key, bounds, unit).value_or(fallback);
+}
+std::optional<double> TableReader::optional_number(const std::string& key, const Bounds& bounds,
+                                                   const std::string& unit) {
+  const toml::node* node = find(key);
+  return node ? std::optional(to_number(*node, key, bounds, unit)) : std::nullopt;
+}
+
+std::optional<int> TableReader::optional_integer(const std::string& key, int least) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
+  if (!value || *value < least || *value > 1000000000)
+    fail(key, fmt::format("= {} is no such number", shown(*node)),
+         fmt::format("give a whole number from {}", least));
+  return static_cast<int>(*value);
+}
+
+bool TableReader::flag_or(const std::string& key, bool fallback) {
+  const toml::node* node = find(key);
+  if (!node) return fallback;
+  if (!node->is_boolean())
+    fail(key, fmt::format("= {} is neither true nor false", shown(*node)), "give true or false");
+  return *node->value<bool>();
+}
+
+std::string TableReader::text_or(const std::string& key, const std::string& fallback) {
+  const toml::node* node = find(key);
+  if (!node) return fallback;
+  if (!node->is_string())
+    fail(key, fmt::format("= {} is no text", shown(*node)), "put it in quotation marks");
+  return *node->value<std::string>();
+}
+
+std::string TableReader::choice_or(const std::string& key, const std::string& fallback,
+                                   const std::vector<std::string>& known) {
+  const std::string value = text_or(key, fallback);
+  for (const auto& k : known)
+    if (value == k) return value;
+  fail(key, fmt::format("= \"{}\" is unknown", value),
+       fmt::format("choose one of: {}", fmt::join(known, ", ")));
+}
+
+Vec2 TableReader::to_vector(const toml::node& node, const std::string& key,
+                            const std::string& unit) const {
+  const toml::array* array = node.as_array();
+  if (!array || array->size() != 2)
+    throw InputError(where(&node, key) + fmt::format(" = {} is no pair of numbers", shown(node)),
+                     fmt::format("give [x, y] {}", unit));
+  return {to_number(*array->get(0), key, {}, unit), to_number(*array->get(1), key, {}, unit)};
+}
+
+Vec2 TableReader::vector(const std::string& key, const std::string& unit) {
+  return to_vector(need(key, "[x, y] " + unit), key, unit);
+}
+Vec2 TableReader::vector_or(const std::string& key, const Vec2& fallback, const std::string& unit) {
+  const toml::node* node = find(key);
+  return node ? to_vector(*node, key, unit) : fallback;
+}
+
+std::vector<Vec2> TableReader::vectors_or_none(const std::string& key, const std::string& unit) {
+  std::vector<Vec2> result;
+  const toml::node* node = find(key);
+  if (!node) return result;
+  const toml::array* array = node->as_array();
+  if (!array || array->empty() || !array->get(0)->is_array())
+    fail(key, fmt::format("= {} is no list of points", shown(*node)), "give [[x, y], …] " + unit);
+  for (const toml::node& point : *array) result.push_back(to_vector(point, key, unit));
+  return result;
+}
+
+Range TableReader::range(const std::string& key, const Bounds& bounds, const std::string& unit) {
+  const toml::node& node = need(key, bounds_text(bounds, unit) + ", or [smallest, largest]");
+  if (!node.is_array()) {
+    const double value = to_number(node, key, bounds, unit);
+    return {value, value};
+  }
+  const Vec2 pair = to_vector(node, key, unit);
+  for (const double v : {pair.x(), pair.y()})
+    if (v <= bounds.lo || v >= bounds.hi)
+      fail(key, fmt::format("= {} is out of range", shown(node)),
+           "give [smallest, largest], each " + bounds_text(bounds, unit));
+  if (pair.x() > pair.y())
+    fail(key, fmt::format("= {} is reversed", shown(node)), "give [smallest, largest]");
+  return {pair.x(), pair.y()};
+}
+
+std::map<std::string, std::string> TableReader::all_as_text() {
+  std::map<std::string, std::string> result;
+  for (const auto& [key, node] : table_) {
+    const std::string name(key.str());
+    asked_.insert(name);
+    if (const auto text = node.value<std::string>(); node.is_string())
+      result[name] = *text;
+    else if (node.is_number())
+      result[name] = fmt::format("{}", *node.value<double>());
+    else
+      fail(name, fmt::format("= {} is neither number nor text", shown(node)),
+           "a script variable is a number or a text");
+  }
+  return result;
+}
+
+void TableReader::finish() const {
+  for (const auto& [key, node] : table_) {
+    const std::string name(key.str());
+    if (asked_.contains(name)) continue;
+    throw InputError(where(&node, name) + " is no known key",
+                     fmt::format("known here: {}", fmt::join(asked_, ", ")));
+  }
+}
+
+}  // namespace lbm

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lbm_solver/base/scene.h"
+
+namespace lbm {
+
+/// Bounds of a number, both inclusive unless `exclusive`.
+struct Bounds {
+  double lo = -std::numeric_limits<double>::infinity();
+  double hi = std::numeric_limits<double>::infinity();
+  bool exclusive = false;
+
+  static Bounds positive() { return {0.0, std::numeric_limits<double>::infinity(), true}; }
+  static Bounds non_negative() { return {0.0}; }
+};
+
+/// One table of a scene file. Every getter notes its key; `finish` complains about keys that nobody
+/// asked for. All errors are InputError and name file, line, key, value and remedy.
+class TableReader {
+ public:
+  TableReader(const toml::table& table, std::string path, std::string file);
+
+  bool has(const std::string& key) const { return table_.contains(key); }
+  TableReader table(const std::string& key);
+  /// A table that may be absent: then an empty one.
+  TableReader optional_table(const std::string& key);
+
+  double number(const std::string& key, const Bounds& bounds, const std::string& unit);
+  double number_or(const std::string& key, double fallback, const Bounds& bounds,
+                   const std::string& unit);
+  std::optional<double> optional_number(const std::string& key, const Bounds& bounds,
+                                        const std::string& unit);
+  std::optional<int> optional_integer(const std::string& key, int least);
+  bool flag_or(const std::string& key, bool fallback);
+  std::string text_or(const std::string& key, const std::string& fallback);
+  std::string choice_or(const std::string& key, const std::string& fallback,
+                        const std::vector<std::string>& known);
+  Vec2 vector(const std::string& key, const std::string& unit);
+  Vec2 vector_or(const std::string& key, const Vec2& fallback, const std::string& unit);
+  std::vector<Vec2> vectors_or_none(const std::string& key, const std::string& unit);
+  /// A number, or [smallest, largest].
+  Range range(const std::string& key, const Bounds& bounds, const std::string& unit);
+  /// Every key of the table as text; numbers as the shortest text that reads back the same.
+  std::map<std::string, std::string> all_as_text();
+
+  /// @throws InputError for a key that was not asked for
+  void finish() const;
+
+  [[noreturn]] void fail(const std::string& key, const std::string& problem,
+                         const std::string& remedy) const;
+
+ private:
+  const toml::node* find(const std::string& key);
+  const toml::node& need(const std::string& key, const std::string& what);
+  std::string where(const toml::node* node, const std::string& key) const;
+  double to_number(const toml::node& node, const std::string& key, const Bounds& bounds,
+                   const std::string& unit) const;
+  Vec2 to_vector(const toml::node& node, const std::string& key, const std::string& unit) const;
+
+  const toml::table& table_;
+  std::string path_, file_;
+  std::set<std::string> asked_;
+};
+
+}  // namespace lbm

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// `lbm scene.toml` runs the fluid of a coupled job; `lbm check scene.toml` looks without running.
+#include <fmt/format.h>
+#include <omp.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
+
+#include "lbm_solver/base/errors.h"
+#include "lbm_solver/coupling/coupled_run.h"
+#include "lbm_solver/coupling/report.h"
+#include "lbm_solver/io/scene_reader.h"
+#include "protocol/mpi_channel.h"
+#include "protocol/program.h"
+#include "protocol/trace.h"
+
+namespace {
+
+using namespace lbm;
+
+struct Options {
+  std::vector<std::string> scene{"scene.toml"};
+  RunOptions run;
+  std::string record, progress = "auto";
+  int threads = 0;
+  bool check = false, liggghts_vars = false;
+};
+
+void add_scene(CLI::App& app, Options& o) {
+  app.add_option("scene", o.scene, "scene file, then overlays that change keys of it")
+      ->capture_default_str();
+}
+
+void define(CLI::App& app, Options& o) {
+  app.set_version_flag("--version", std::string("lbm ") + BPLBM_VERSION);
+  app.add_option("--out", o.run.out, "folder of all output")->capture_default_str();
+  app.add_option("--until", o.run.until, "stop at this time [s]")->check(CLI::PositiveNumber);
+  app.add_option("--record", o.record, "write the exchange to this trace file");
+  app.add_option("--threads", o.threads, "threads (else OMP_NUM_THREADS, else 1)")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--progress", o.progress, "line, tenths, none, auto")
+      ->check(CLI::IsMember({"line", "tenths", "none", "auto"}))
+      ->capture_default_str();
+  app.add_option("--set", o.run.set, "name of the parameter set, for the summary");
+  app.add_option("--variant", o.run.variant, "name of the variant, for the summary");
+  add_scene(app, o);
+  auto* check = app.add_subcommand("check", "look at a scene without running it");
+  check->add_flag("--liggghts-vars", o.liggghts_vars, "print the -var options for LIGGGHTS");
+  add_scene(*check, o);
+  check->callback([&o] { o.check = true; });
+}
+
+int check(const Options& o) {
+  const Scene scene = read_scene(o.scene);
+  const Plan plan = make_plan(scene);
+  if (!o.liggghts_vars) {
+    fmt::print("{}{}", describe(scene, plan), describe_cost(scene, plan));
+    return protocol::kOk;
+  }
+  if (!scene.coupling) throw InputError(scene.file, "has no [coupling]", "there are no variables");
+  std::string line;
+  for (const auto& v : make_hello(scene, plan).variables)
+    line += fmt::format("{}-var {} {}", line.empty() ? "" : " ", v.name, v.value);
+  fmt::print("{}\n", line);
+  return protocol::kOk;
+}
+
+Log::Progress progress_style(const std::string& name) {
+  if (name == "none") return Log::Progress::None;
+  if (name == "line" || (name == "auto" && isatty(STDOUT_FILENO))) return Log::Progress::Line;
+  return Log::Progress::Tenths;
+}
+
+void set_threads(int threads) {
+  if (threads > 0)
+    omp_set_num_threads(threads);
+  else if (!std::getenv("OMP_NUM_THREADS"))
+    omp_set_num_threads(1);  // the solid program needs cores too
+}
+
+/// @param channel  set as soon as there is a partner, so that an error can be told to it
+void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol::World& world) {
+  world = protocol::connect(protocol::Role::Fluid);
+  int ranks = 0;
+  MPI_Comm_size(world.local, &ranks);
+  if (world.coupled()) channel = protocol::make_mpi_channel(world, protocol::Role::Fluid);
+  if (ranks > 1)
+    throw InputError("mpirun", fmt::format("{} ranks of lbm were started", ranks),
+                     "start one lbm, with --threads for more cores, and liggghts after a colon");
+  const Scene scene = read_scene(o.scene);
+  if (!scene.coupling)
+    throw InputError(scene.file, "has no [coupling], and nothing else drives a fluid yet",
+                     "add the tables [coupling] and [particles]");
+  const Plan plan = make_plan(scene);
+  if (!channel)
+    throw InputError(
+        "mpirun", "no solid program was started beside lbm",
+        "start: mpirun -np 1 lbm scene.toml : -np 1 liggghts -in in.liggghts, or tools/run");
+  std::error_code failed;
+  std::filesystem::create_directories(o.run.out, failed);
+  if (failed) throw InputError(o.run.out, failed.message(), "choose another --out");
+  if (!o.record.empty())
+    channel = protocol::make_recording_channel(
+        std::move(channel),
+        std::make_unique<protocol::TraceWriter>(o.record, "fluid", 0, world.partner_ranks));
+  set_threads(o.threads);
+  Log log(o.run.out, progress_style(o.progress));
+  log.block(describe(scene, plan));
+  log.block(describe(run_coupled(scene, plan, *channel, o.run, log)));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{
+      "Lattice Boltzmann fluid of a coupled job: mpirun -np 1 lbm SCENE : -np 1 liggghts -in FILE"};
+  define(app, options);
+  CLI11_PARSE(app, argc, argv);
+  if (options.check) try {
+      return check(options);
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "lbm | error | {}\n", error.what());
+      return protocol::exit_code_of(error);
+    }
+
+  MPI_Init(&argc, &argv);
+  protocol::catch_signals();
+  std::unique_ptr<protocol::Channel> channel;
+  protocol::World world;
+  int code = protocol::kOk;
+  try {
+    run(options, channel, world);
+  } catch (const std::exception& error) {
+    code = protocol::leave_after(error, "lbm", channel.get());
+  }
+  channel.reset();
+  protocol::disconnect(world);
+  MPI_Finalize();
+  return code;
+}

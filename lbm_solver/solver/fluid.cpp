@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/solver/fluid.h"
+
+#include <cmath>
+
+#include "lbm_solver/base/contracts.h"
+
+namespace lbm {
+
+Fluid::Fluid(const Domain& domain, const KernelChoice& choice)
+    : domain_(domain),
+      f_(domain.nx, domain.ny),
+      stream_(domain.x, domain.y),
+      kernel_(make_kernel(choice)),
+      cover_(choice.solid_term == "none" ? nullptr
+                                         : std::make_unique<CoverMap>(domain, choice.tau)) {}
+
+void Fluid::set_equilibrium(int x, int y, double rho, const Vec2& u) {
+  const Equilibrium<double> eq(rho - 1.0, u.x(), u.y());
+  arriving(0, x, y) = eq.rest();
+  unroll<D2Q9::pairs>([&](auto p) {
+    constexpr int i = 2 * p + 1;
+    const auto halves = eq.pair<i>();
+    arriving(i, x, y) = halves.even + halves.odd;
+    arriving(i + 1, x, y) = halves.even - halves.odd;
+  });
+}
+
+void Fluid::place(std::span<const Disc> discs) {
+  BPLBM_EXPECT(cover_ != nullptr);
+  cover_->update(discs);
+}
+
+void Fluid::step() {
+  kernel_->sweep(f_, stream_, cover_.get());
+  stream_.advance();
+}
+
+Fluid::Cell Fluid::cell(int x, int y) const {
+  double f[D2Q9::Q];
+  for (int q = 0; q < D2Q9::Q; ++q) f[q] = arriving(q, x, y);
+  const Moments<double> m = moments(f);
+  return {m.drho + 1.0, {m.ux, m.uy}};
+}
+
+void Fluid::row(int y, std::span<double> rho, std::span<double> ux, std::span<double> uy) {
+  const EsotericPull::Row row = stream_.open(f_, y);  // makes the ends ready; may be repeated
+  const auto cells = [&]<class V>(int x) {
+    V f[D2Q9::Q];
+    unroll<D2Q9::Q>([&](auto q) { f[q] = load<V>(row.in[q] + x); });
+    const Moments<V> m = moments(f);
+    store(&rho[x], m.drho + V(1.0));
+    store(&ux[x], m.ux);
+    store(&uy[x], m.uy);
+  };
+  int x = 0;
+  for (; x + kPackWidth <= domain_.nx; x += kPackWidth) cells.operator()<Pack>(x);
+  for (; x < domain_.nx; ++x) cells.operator()<double>(x);
+}
+
+Fluid::Extremes Fluid::extremes() {
+  Extremes e;
+  double largest = 0.0;
+  std::vector<double> rho(domain_.nx), ux(domain_.nx), uy(domain_.nx);
+  for (int y = 0; y < domain_.ny; ++y) {
+    row(y, rho, ux, uy);
+    for (int x = 0; x < domain_.nx; ++x) {
+      const double speed2 = ux[x] * ux[x] + uy[x] * uy[x];
+      e.mass_excess += rho[x] - 1.0;
+      if (!std::isfinite(rho[x] + speed2)) return {speed2, x, y, false, 0.0};
+      if (speed2 <= largest) continue;
+      largest = speed2;
+      e.x = x;
+      e.y = y;
+    }
+  }
+  e.max_speed = std::sqrt(largest);
+  return e;
+}
+
+}  // namespace lbm

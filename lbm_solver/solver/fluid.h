@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lbm_solver/solver/kernel.h"
+
+namespace lbm {
+
+/// The fluid: a lattice, what happens at its sides, and the solids in it. Everything in lattice
+/// units.
+class Fluid {
+ public:
+  /// Starts at rest with density 1.
+  Fluid(const Domain& domain, const KernelChoice& choice);
+
+  const Domain& domain() const { return domain_; }
+  bool has_solids() const { return cover_ != nullptr; }
+  const CoverMap* cover() const { return cover_.get(); }
+
+  /// Sets a cell to the equilibrium of a density and a velocity.
+  void set_equilibrium(int x, int y, double rho, const Vec2& u);
+
+  /// Places the solids. Needs a solid term in the kernel's choice.
+  void place(std::span<const Disc> discs);
+
+  /// Advances by one time step.
+  void step();
+
+  /// Loads on the placed discs over the last step, in their order.
+  std::vector<DiscLoad> loads() const { return cover_->loads(); }
+
+  struct Cell {
+    double rho;
+    Vec2 u;
+  };
+  /// Density and velocity of the populations that have arrived at a cell.
+  Cell cell(int x, int y) const;
+
+  /// Population f_q - w_q that has arrived at a cell, for tests and cell passes.
+  double& arriving(int q, int x, int y) { return stream_.arriving(f_, q, x, y); }
+  double arriving(int q, int x, int y) const { return stream_.arriving(f_, q, x, y); }
+
+  struct Extremes {
+    double max_speed = 0.0;
+    int x = 0, y = 0;  ///< cell of max_speed, or the first cell that is not finite
+    bool finite = true;
+    double mass_excess = 0.0;  ///< Σ (rho - 1)
+  };
+  Extremes extremes();
+
+  /// Density and velocity of a whole row. @param rho, ux, uy  [nx] each, overwritten
+  void row(int y, std::span<double> rho, std::span<double> ux, std::span<double> uy);
+
+  std::size_t bytes() const { return f_.bytes() + (cover_ ? cover_->bytes() : 0); }
+
+ private:
+  Domain domain_;
+  Populations f_;
+  EsotericPull stream_;
+  std::unique_ptr<Kernel> kernel_;
+  std::unique_ptr<CoverMap> cover_;
+};
+
+}  // namespace lbm

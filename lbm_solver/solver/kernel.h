@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lbm_solver/collision/two_rates.h"
+#include "lbm_solver/field/esoteric_pull.h"
+#include "lbm_solver/immersed/cover_map.h"
+
+namespace lbm {
+
+/// One sweep of the lattice: stream and collide every cell. The only virtual call of a time step.
+class Kernel {
+ public:
+  virtual ~Kernel() = default;
+  /// @param cover  covered cells; null where the scene has no solids
+  virtual void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover) const = 0;
+};
+
+/// What a scene asks of the kernel; a row of the kernel table.
+struct KernelChoice {
+  std::string collision;   ///< "bgk" or "trt"
+  std::string solid_term;  ///< "none" or one of known_solid_terms()
+  double tau = 1.0;
+  double magic = 3.0 / 16.0;  ///< Λ of TRT
+};
+
+/// @throws std::invalid_argument naming the rows that exist
+std::unique_ptr<Kernel> make_kernel(const KernelChoice& choice);
+
+std::vector<std::string> known_collisions();
+std::vector<std::string> known_solid_terms();
+
+}  // namespace lbm

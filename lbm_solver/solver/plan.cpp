@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/solver/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lbm_solver/base/errors.h"
+
+namespace lbm {
+namespace {
+
+constexpr double kStepFractionOfContact = 0.1;  // solid step / √(m/k): the papers' λ
+constexpr double kLimitReynoldsCell = 5.0;      // beyond: fixed-Λ TRT gives noisy forces
+constexpr double kFewCells = 4.0;               // a diameter below which nothing is claimed
+
+double cell_size(const Scene& s) {
+  if (s.numerics.cell) return *s.numerics.cell;
+  if (!s.particles)
+    throw InputError(s.file + ": numerics.cells_per_diameter", "needs a table [particles]",
+                     "give numerics.cell instead");
+  return s.particles->diameter.lo / *s.numerics.cells_per_diameter;
+}
+
+int cells_along(const Scene& s, double length, double dx, const char* axis) {
+  const double cells = length / dx;
+  const double whole = std::round(cells);
+  if (std::abs(cells - whole) > 1e-6 * cells || whole < 3.0)
+    throw InputError(
+        s.file + ": box.size",
+        fmt::format(
+            "{} = {:.9g} m holds {:.6g} cells of {:.6g} m, not a whole number of at least 3", axis,
+            length, cells, dx),
+        fmt::format("take {:.9g} m, or another cell", std::max(3.0, whole) * dx));
+  if (whole > 100000.0)
+    throw InputError(s.file + ": numerics", fmt::format("{:.3g} cells along {}", whole, axis),
+                     "take a coarser cell");
+  return static_cast<int>(whole);
+}
+
+Side to_side(SideKind kind) {
+  return kind == SideKind::Wall ? Side::Wall : Side::Periodic;
+}
+
+void check_particles(const Scene& s) {
+  const ParticleScene& p = *s.particles;
+  const double width = s.box.size.minCoeff();
+  if (p.diameter.hi > width)
+    throw InputError(
+        s.file + ": particles.diameter",
+        fmt::format("= {:.6g} m is wider than the box ({:.6g} m)", p.diameter.hi, width),
+        "take a smaller particle or a larger box");
+  const auto half_periodic = [&](SideKind side, double length) {
+    return side == SideKind::Periodic && p.diameter.hi > 0.5 * length;
+  };
+  if (half_periodic(s.box.x, s.box.size.x()) || half_periodic(s.box.y, s.box.size.y()))
+    throw InputError(s.file + ": particles.diameter",
+                     fmt::format("= {:.6g} m exceeds half of a periodic length", p.diameter.hi),
+                     "take a longer box");
+  const double r = 0.5 * p.diameter.lo;
+  for (const Vec2& x : p.start) {
+    const auto outside = [&](int k, SideKind side) {
+      const double margin = side == SideKind::Wall ? r : 0.0;
+      return x[k] - margin < s.box.origin[k] - 1e-12 ||
+             x[k] + margin > s.box.origin[k] + s.box.size[k] + 1e-12;
+    };
+    if (outside(0, s.box.x) || outside(1, s.box.y))
+      throw InputError(s.file + ": particles.start",
+                       fmt::format("[{:.6g}, {:.6g}] with radius {:.6g} m lies outside the box",
+                                   x.x(), x.y(), r),
+                       fmt::format("keep it within {:.6g} … {:.6g} by {:.6g} … {:.6g} m",
+                                   s.box.origin.x(), s.box.origin.x() + s.box.size.x(),
+                                   s.box.origin.y(), s.box.origin.y() + s.box.size.y()));
+  }
+}
+
+/// C = dx/dt, and what set it.
+void choose_step(const Scene& s, Plan& plan) {
+  const double dx = plan.units.dx, nu = s.fluid.viscosity, u = s.fluid.velocity_scale;
+  if (s.numerics.time_step) {
+    plan.lattice_speed = dx / *s.numerics.time_step;
+    plan.step_limit = "given by the scene";
+  } else {
+    const double mach = 10.0 * u, viscous = 3.0 * nu / dx;
+    plan.lattice_speed = std::max(mach, viscous);
+    plan.step_limit = mach >= viscous ? "Mach: C = 10 × velocity_scale"
+                                      : "relaxation time: C = 3 ν/Δx keeps τ ≤ 1.5";
+  }
+}
+
+/// Rounds the step down so that the end time is a whole number of intervals.
+void fit_to_end(const Scene& s, Plan& plan) {
+  const double wished = plan.units.dx / plan.lattice_speed;
+  const double intervals = std::ceil(s.end_time / (wished * plan.fluid_steps) - 1e-9);
+  if (intervals > 1e12)
+    throw InputError(s.file + ": run.end_time", fmt::format("needs {:.2g} steps", intervals),
+                     "take a coarser cell, a smaller velocity scale or an earlier end");
+  plan.intervals = std::max<std::int64_t>(1, static_cast<std::int64_t>(intervals));
+  plan.units.dt = s.numerics.time_step
+                      ? wished
+                      : s.end_time / (static_cast<double>(plan.intervals) * plan.fluid_steps);
+  plan.lattice_speed = plan.units.dx / plan.units.dt;
+}
+
+void judge_step(const Scene& s, Plan& plan) {
+  const double tau = plan.kernel.tau;
+  plan.u_over_c = s.fluid.velocity_scale / plan.lattice_speed;
+  plan.reynolds_cell = s.fluid.velocity_scale * plan.units.dx / s.fluid.viscosity;
+  if (plan.u_over_c > kStopSpeed)
+    throw InputError(
+        s.file + ": numerics.time_step",
+        fmt::format("gives velocity_scale/C = {:.3g}, above {} (compressible)", plan.u_over_c,
+                    kStopSpeed),
+        fmt::format("take at most {:.3g} s", kWarnSpeed * plan.units.dx / s.fluid.velocity_scale));
+  if (tau - 0.5 < 1e-6)
+    throw InputError(s.file + ": numerics",
+                     fmt::format("τ - ½ = {:.2g} is not positive enough", tau - 0.5),
+                     "take a finer cell or a smaller time step ratio");
+  if (tau > 3.0)
+    throw InputError(s.file + ": numerics.time_step", fmt::format("gives τ = {:.3g}, above 3", tau),
+                     fmt::format("take at most {:.3g} s",
+                                 plan.units.dx * plan.units.dx / (3.0 * s.fluid.viscosity)));
+  if (plan.u_over_c > kWarnSpeed * 1.001)
+    plan.warnings.push_back(fmt::format(
+        "velocity_scale/C = {:.3g} exceeds {}: compressibility error", plan.u_over_c, kWarnSpeed));
+  if (plan.reynolds_cell > kLimitReynoldsCell)
+    plan.warnings.push_back(fmt::format(
+        "Re_h = {:.3g} exceeds {}: forces are noisy with fixed-Λ TRT; a finer cell helps",
+        plan.reynolds_cell, kLimitReynoldsCell));
+  if (plan.cells_per_diameter > 0.0 && plan.cells_per_diameter < kFewCells)
+    plan.warnings.push_back(fmt::format("D/Δx = {:.3g} is below {}: no accuracy is claimed",
+                                        plan.cells_per_diameter, kFewCells));
+}
+
+void choose_substeps(const Scene& s, Plan& plan) {
+  const CouplingScene& c = *s.coupling;
+  const ParticleScene& p = *s.particles;
+  double needed = 1.0;
+  if (p.contact_stiffness) {
+    const double r = 0.5 * p.diameter.lo;
+    const double mass = std::numbers::pi * r * r * s.box.depth * p.density.lo;
+    const double contact = std::sqrt(mass / *p.contact_stiffness);
+    needed = std::ceil(plan.interval() / (kStepFractionOfContact * contact) - 1e-9);
+    plan.substep_limit = fmt::format("contact: step ≤ {} √(m/k) = {:.3g} s", kStepFractionOfContact,
+                                     kStepFractionOfContact * contact);
+  } else {
+    plan.substep_limit = "no contact_stiffness given";
+  }
+  plan.substeps = c.substeps.value_or(static_cast<int>(std::max(1.0, needed)));
+  if (c.substeps) plan.substep_limit = "given by the scene; " + plan.substep_limit;
+  // 5 times the recommended step is 0.5 √(m/k), a quarter of the stability limit 2 √(m/k)
+  if (plan.substeps * 5.0 < needed)
+    throw InputError(
+        s.file + ": coupling.substeps",
+        fmt::format("= {} makes the solid's step too long for its contacts", plan.substeps),
+        fmt::format("take at least {:.0f} ({})", needed, plan.substep_limit));
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& s) {
+  Plan plan;
+  const double dx = cell_size(s);
+  plan.domain = {cells_along(s, s.box.size.x(), dx, "x"), cells_along(s, s.box.size.y(), dx, "y"),
+                 to_side(s.box.x), to_side(s.box.y)};
+  plan.units = {dx, 0.0, s.fluid.density, s.box.depth, s.box.origin};
+  const double length = s.particles ? s.particles->diameter.lo : s.box.size.x();
+  plan.reynolds = s.fluid.velocity_scale * length / s.fluid.viscosity;
+  if (s.particles) {
+    check_particles(s);
+    plan.cells_per_diameter = s.particles->diameter.lo / dx;
+  }
+  if (s.coupling) plan.fluid_steps = s.coupling->fluid_steps;
+  choose_step(s, plan);
+  fit_to_end(s, plan);
+  plan.kernel.collision = s.numerics.collision;
+  plan.kernel.magic = s.numerics.magic;
+  plan.kernel.solid_term = s.coupling ? s.coupling->solid_term : "none";
+  plan.kernel.tau = 0.5 + 3.0 * s.fluid.viscosity * plan.units.dt / (dx * dx);
+  judge_step(s, plan);
+  if (s.coupling) choose_substeps(s, plan);
+  return plan;
+}
+
+protocol::Hello make_hello(const Scene& s, const Plan& plan) {
+  const Vec2 top = s.box.origin + s.box.size;
+  const double half_depth = 0.5 * s.box.depth;
+  protocol::Hello h;
+  h.role = protocol::Role::Fluid;
+  h.program = "lbm";
+  h.program_version = BPLBM_VERSION;
+  h.dimension = 2;
+  h.box_lo = {s.box.origin.x(), s.box.origin.y(), -half_depth};
+  h.box_hi = {top.x(), top.y(), half_depth};
+  h.periodic = {s.box.x == SideKind::Periodic, s.box.y == SideKind::Periodic, 1};
+  h.depth = s.box.depth;
+  h.gravity = {s.fluid.gravity.x(), s.fluid.gravity.y(), 0.0};
+  h.buoyancy = s.coupling->buoyancy;
+  h.step = plan.units.dt;
+  h.fluid_steps = plan.fluid_steps;
+  h.solid_steps = plan.substeps;
+  const ParticleScene& p = *s.particles;
+  h.radius = Range{0.5 * p.diameter.lo, 0.5 * p.diameter.hi};
+  h.density = p.density;
+  h.subdomain_lo = h.box_lo;
+  h.subdomain_hi = h.box_hi;
+  h.reach = 2.0 * plan.units.dx;
+
+  const auto number = [&h](const std::string& name, double value) {
+    h.variables.push_back(
+        {name, fmt::format("{}", value)});  // shortest text that reads back the same
+  };
+  const auto whole = [&h](const std::string& name, std::int64_t value) {
+    h.variables.push_back({name, fmt::format("{}", value)});
+  };
+  const char* axis[] = {"x", "y", "z"};
+  for (int k = 0; k < 3; ++k) {
+    number(fmt::format("{}_lo", axis[k]), h.box_lo[k]);
+    number(fmt::format("{}_hi", axis[k]), h.box_hi[k]);
+    h.variables.push_back({fmt::format("boundary_{}", axis[k]), h.periodic[k] ? "p" : "f"});
+  }
+  const double g = s.fluid.gravity.norm();
+  number("depth", s.box.depth);
+  number("gravity", g);
+  number("gravity_x", g > 0.0 ? s.fluid.gravity.x() / g : 0.0);
+  number("gravity_y", g > 0.0 ? s.fluid.gravity.y() / g : -1.0);
+  number("solid_step", plan.interval() / plan.substeps);
+  whole("substeps", plan.substeps);
+  whole("solid_steps_total", plan.intervals * plan.substeps);
+  number("diameter_min", p.diameter.lo);
+  number("diameter_max", p.diameter.hi);
+  number("density_min", p.density.lo);
+  number("density_max", p.density.hi);
+  for (std::size_t i = 0; i < p.start.size(); ++i) {
+    number(fmt::format("particle{}_x", i + 1), p.start[i].x());
+    number(fmt::format("particle{}_y", i + 1), p.start[i].y());
+  }
+  if (p.contact_stiffness) number("contact_stiffness", *p.contact_stiffness);
+  for (const auto& [name, value] : p.variables) h.variables.push_back({name, value});
+  return h;
+}
+
+}  // namespace lbm

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lbm_solver/base/scene.h"
+#include "lbm_solver/solver/fluid.h"
+
+namespace lbm {
+
+/// A scene turned into numbers: grid, steps, and the dimensionless groups that judge them.
+struct Plan {
+  Domain domain;
+  Units units;
+  KernelChoice kernel;
+  std::int64_t intervals = 0;  ///< coupling intervals (fluid steps when alone) to the end time
+  int fluid_steps = 1;         ///< a coupling interval
+  int substeps = 1;            ///< solid steps a coupling interval
+
+  double lattice_speed = 0.0;       ///< C = dx/dt [m/s]
+  double u_over_c = 0.0;            ///< velocity scale / C, the papers' Mach number
+  double reynolds = 0.0;            ///< with the smallest diameter, or the box's width
+  double reynolds_cell = 0.0;       ///< Re_h = u dx / nu
+  double cells_per_diameter = 0.0;  ///< smallest particle; 0 without particles
+  std::string step_limit;           ///< what chose the fluid step
+  std::string substep_limit;        ///< what chose the substeps
+  std::vector<std::string> warnings;
+
+  double interval() const { return units.dt * fluid_steps; }  ///< [s]
+};
+
+/// Speed limits, as velocity over C = dx/dt.
+inline constexpr double kWarnSpeed = 0.1;
+inline constexpr double kStopSpeed = 0.2;
+
+/// Chooses what the scene leaves open and refuses what cannot work.
+/// Step rule: C = max(10 velocity_scale, 3 nu/dx); the second keeps tau <= 1.5.
+/// @throws InputError
+Plan make_plan(const Scene& scene);
+
+/// What the fluid says to the solid: everything of the plan that both must agree on, and the
+/// variables that its script may use instead of numbers of its own.
+protocol::Hello make_hello(const Scene& scene, const Plan& plan);
+
+}  // namespace lbm

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "liggghts_coupling/host/fix_lbm_couple.h"
+
+#include <atom.h>
+#include <comm.h>
+#include <domain.h>
+#include <error.h>
+#include <fmt/format.h>
+#include <memory.h>
+#include <modify.h>
+#include <signal_handling.h>
+#include <update.h>
+
+#include <cstring>
+
+#include "liggghts_coupling/host/coupling.h"
+#include "liggghts_coupling/host/solid_hello.h"
+#include "protocol/trace.h"
+
+namespace dem {
+
+using namespace LAMMPS_NS::FixConst;
+namespace SignalHandler = LAMMPS_NS::SignalHandler;
+
+FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
+    : Fix(lammps, narg, arg) {
+  parse(narg, arg);
+  if (!Coupling::instance().session)
+    fail(
+        "no fluid program was started beside liggghts; start: mpirun -np 1 lbm scene.toml : -np 1 "
+        "liggghts -in FILE");
+  nevery = 1;
+  restart_peratom = 1;
+  create_attribute = 1;
+  peratom_flag = 1;
+  size_peratom_cols = kValues;
+  peratom_freq = 1;
+  grow_arrays(atom->nmax);
+  atom->add_callback(0);  // held loads follow their particles …
+  atom->add_callback(1);  // … and go into restart files
+  for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
+  Coupling::instance().session->set_timeout(timeout_);
+  if (!record_.empty()) begin_recording();
+}
+
+FixLbmCouple::~FixLbmCouple() {
+  atom->delete_callback(id, 0);
+  atom->delete_callback(id, 1);
+  memory->destroy(held_);
+}
+
+void FixLbmCouple::fail(const std::string& text) const {
+  error->all(FLERR, ("fix " + std::string(id) + " lbm/couple: " + text).c_str());
+  std::abort();  // not reached: error->all ends the program
+}
+
+void FixLbmCouple::parse(int narg, char** arg) {
+  const std::string usage = "; usage: fix ID group lbm/couple every N [timeout S] [record FILE]";
+  for (int i = 3; i < narg; i += 2) {
+    const std::string key = arg[i];
+    if (i + 1 == narg) fail("'" + key + "' has no value" + usage);
+    if (key == "every")
+      substeps_ = std::atoi(arg[i + 1]);
+    else if (key == "timeout")
+      timeout_ = std::atof(arg[i + 1]);
+    else if (key == "record")
+      record_ = arg[i + 1];
+    else
+      fail("'" + key + "' is no keyword" + usage);
+  }
+  if (substeps_ < 1) fail("'every' must be a whole number of at least 1, e.g. ${substeps}" + usage);
+  if (!(timeout_ > 0.0)) fail("'timeout' must be a positive number of seconds" + usage);
+}
+
+void FixLbmCouple::begin_recording() const {
+  Coupling& coupling = Coupling::instance();
+  const int rank = comm->me;
+  const std::string file = rank == 0 ? record_ : fmt::format("{}.{}", record_, rank);
+  try {
+    auto writer = std::make_unique<protocol::TraceWriter>(file, "solid", rank,
+                                                          coupling.channel->remote_size());
+    for (int r = 0; r < coupling.channel->remote_size(); ++r)  // came before this script was read
+      writer->record(protocol::Direction::Received, r, encode(coupling.session->fluid()));
+    coupling.channel =
+        protocol::make_recording_channel(std::move(coupling.channel), std::move(writer));
+  } catch (const std::exception& e) {
+    error->one(FLERR, e.what());
+  }
+  coupling.session->use(*coupling.channel);
+}
+
+int FixLbmCouple::setmask() {
+  return POST_FORCE | END_OF_STEP;
+}
+
+void FixLbmCouple::init() {
+  if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
+    fail("needs spheres; use atom_style granular");
+  if (modify->n_fixes_style("lbm/couple") != 1) fail("only one fix lbm/couple may exist");
+  for (int i = 0; i < modify->my_index(this); ++i)
+    for (const char* later : {"enforce2d", "freeze"})
+      if (std::strcmp(modify->fix[i]->style, later) == 0)
+        fail(fmt::format("must stand before fix {} {}, which would not see the loads",
+                         modify->fix[i]->id, later));
+}
+
+void FixLbmCouple::setup(int vflag) {
+  Coupling& coupling = Coupling::instance();
+  if (set_up_)
+    fail(coupling.over
+             ? "the fluid has reached its end and left: no run may follow"
+             : "a second run, or 'run N every M', is not possible: the fluid goes on from the "
+               "first; use a single run");
+  set_up_ = true;
+  protocol::Hello hello = SolidHello(lmp, groupbit, substeps_).collect();
+  if (hello.buoyancy != protocol::Buoyancy::BySolid)
+    hello.buoyancy = coupling.session->fluid().buoyancy == protocol::Buoyancy::None
+                         ? protocol::Buoyancy::None
+                         : protocol::Buoyancy::ByFluid;
+  coupling.session->agree(hello);
+  coupling.agreed = true;
+  first_step_ = update->ntimestep;
+  exchange(false);
+  post_force(vflag);
+}
+
+void FixLbmCouple::post_force(int) {
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    for (int k = 0; k < 3; ++k) {
+      atom->f[i][k] += held_[i][k];
+      atom->torque[i][k] += held_[i][3 + k];
+    }
+  }
+}
+
+void FixLbmCouple::end_of_step() {
+  if (Coupling::instance().over || (update->ntimestep - first_step_) % substeps_ != 0) return;
+  ++interval_;
+  exchange(true);
+  if (Coupling::instance().over)
+    SignalHandler::request_quit = true;  // leaves the run after this step
+}
+
+void FixLbmCouple::post_run() {
+  if (Coupling::instance().over) SignalHandler::request_quit = false;  // the script continues
+}
+
+void FixLbmCouple::gather() {
+  states_.clear();
+  shapes_.clear();
+  local_.clear();
+  const double factor = domain->dimension == 2 ? 0.5 : 0.4;  // inertia of a disc, of a sphere
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *x = atom->x[i], *v = atom->v[i], *w = atom->omega[i];
+    const double r = atom->radius[i], m = atom->rmass[i];
+    states_.push_back({atom->tag[i], {x[0], x[1], x[2]}, {v[0], v[1], v[2]}, {w[0], w[1], w[2]}});
+    shapes_.push_back({atom->tag[i], r, m, factor * m * r * r, atom->type[i]});
+    local_.push_back(i);
+  }
+}
+
+/// @param add_change  the forces of the step just done are still in f and will act in the next
+/// first
+///                    half-step: replace the old load by the new one there too, so that the impulse
+///                    of an interval is its load times its length
+void FixLbmCouple::exchange(bool add_change) {
+  Coupling& coupling = Coupling::instance();
+  gather();
+  const double interval = update->dt * substeps_;
+  const protocol::StepHeader head{interval_, static_cast<double>(interval_) * interval,
+                                  stop_asked_ ? protocol::kLast : protocol::kContinue};
+  const auto reply = coupling.session->exchange(head, states_, shapes_);
+  if (stop_asked_) {
+    coupling.over = true;
+    return;
+  }
+  stop_asked_ = reply.flags & protocol::kStop;
+  for (std::size_t n = 0; n < local_.size(); ++n) {
+    const int i = local_[n];
+    for (int k = 0; k < 3; ++k) {
+      const double force = reply.loads[n].force[k], torque = reply.loads[n].torque[k];
+      if (add_change) {
+        atom->f[i][k] += force - held_[i][k];
+        atom->torque[i][k] += torque - held_[i][3 + k];
+      }
+      held_[i][k] = force;
+      held_[i][3 + k] = torque;
+    }
+  }
+}
+
+// ---- held loads travel with their particles ---------------------------------------------------
+
+void FixLbmCouple::grow_arrays(int n) {
+  memory->grow(held_, n, kValues, "lbm/couple:held");
+  array_atom = held_;
+}
+void FixLbmCouple::copy_arrays(int from, int to, int) {
+  std::copy_n(held_[from], kValues, held_[to]);
+}
+void FixLbmCouple::set_arrays(int i) {
+  std::fill_n(held_[i], kValues, 0.0);
+}
+int FixLbmCouple::pack_exchange(int i, double* buffer) {
+  std::copy_n(held_[i], kValues, buffer);
+  return kValues;
+}
+int FixLbmCouple::unpack_exchange(int i, double* buffer) {
+  std::copy_n(buffer, kValues, held_[i]);
+  return kValues;
+}
+int FixLbmCouple::pack_restart(int i, double* buffer) {
+  buffer[0] = kValues + 1;  // LIGGGHTS' convention: a fix's record begins with its length
+  std::copy_n(held_[i], kValues, buffer + 1);
+  return kValues + 1;
+}
+void FixLbmCouple::unpack_restart(int i, int nth) {
+  const double* record = atom->extra[i];
+  for (int n = 0; n < nth; ++n) record += static_cast<int>(record[0]);
+  std::copy_n(record + 1, kValues, held_[i]);
+}
+double FixLbmCouple::memory_usage() {
+  return static_cast<double>(atom->nmax) * kValues * sizeof(double);
+}
+
+}  // namespace dem

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <fix.h>
+
+#include <string>
+#include <vector>
+
+#include "protocol/messages.h"
+
+namespace dem {
+
+/// `fix ID group lbm/couple every N [timeout S] [record FILE]`
+///
+/// Every N steps: sends position, velocity and angular velocity of the group's particles to the
+/// fluid and receives the mean hydrodynamic force and torque on each for the next N steps, which it
+/// adds at every step. The held loads migrate with the particles, are kept in restart files, and
+/// can be dumped as f_ID[1] … f_ID[6].
+class FixLbmCouple final : public LAMMPS_NS::Fix {
+ public:
+  FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
+  ~FixLbmCouple() override;
+
+  int setmask() override;
+  void init() override;
+  void setup(int vflag) override;
+  void post_force(int vflag) override;
+  void end_of_step() override;
+  void post_run() override;
+
+  void grow_arrays(int n) override;
+  void copy_arrays(int from, int to, int is_delete) override;
+  void set_arrays(int i) override;
+  int pack_exchange(int i, double* buffer) override;
+  int unpack_exchange(int i, double* buffer) override;
+  int pack_restart(int i, double* buffer) override;
+  void unpack_restart(int i, int nth) override;
+  int size_restart(int) override { return kValues + 1; }
+  int maxsize_restart() override { return kValues + 1; }
+  double memory_usage() override;
+
+ private:
+  static constexpr int kValues = 6;  ///< force, torque
+
+  void parse(int narg, char** arg);
+  void begin_recording() const;
+  void gather();
+  void exchange(bool add_change);
+  [[noreturn]] void fail(const std::string& text) const;
+
+  int substeps_ = 0;
+  double timeout_ = 300.0;
+  std::string record_;
+  double** held_ = nullptr;  ///< [nmax][6] force [N] and torque [N m] of the current interval
+  LAMMPS_NS::bigint first_step_ = 0;
+  std::int64_t interval_ = 0;
+  bool stop_asked_ = false;
+  bool set_up_ = false;
+  std::vector<protocol::State> states_;  // buffers of one exchange
+  std::vector<protocol::Shape> shapes_;
+  std::vector<int> local_;
+};
+
+}  // namespace dem

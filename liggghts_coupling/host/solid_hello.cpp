@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "liggghts_coupling/host/solid_hello.h"
+
+#include <atom.h>
+#include <comm.h>
+#include <domain.h>
+#include <error.h>
+#include <fix_gravity.h>
+#include <modify.h>
+#include <update.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace dem {
+
+using protocol::Hello;
+
+double particle_volume(int dimension, double radius, double depth) {
+  const double disc = std::numbers::pi * radius * radius;
+  return dimension == 2 ? disc * depth : disc * radius * 4.0 / 3.0;
+}
+
+SolidHello::SolidHello(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps)
+    : Pointers(lammps), groupbit_(groupbit), substeps_(substeps) {}
+
+Hello SolidHello::collect() {
+  Hello hello;
+  hello.role = protocol::Role::Solid;
+  hello.program = "liggghts";
+  hello.program_version = "3.8.0 + bplbm " BPLBM_VERSION;
+  hello.step = update->dt;
+  hello.solid_steps = static_cast<std::uint32_t>(substeps_);
+  geometry(hello);
+  forces(hello);
+  particles(hello);
+  return hello;
+}
+
+void SolidHello::geometry(Hello& hello) const {
+  if (domain->triclinic)
+    error->all(FLERR, "fix lbm/couple: a triclinic box cannot couple; use an orthogonal region");
+  if (domain->nonperiodic == 2)
+    error->all(FLERR, "fix lbm/couple: a shrink-wrapped box cannot couple; use boundary p or f");
+  hello.dimension = static_cast<std::uint32_t>(domain->dimension);
+  for (int k = 0; k < 3; ++k) {
+    hello.box_lo[k] = domain->boxlo[k];
+    hello.box_hi[k] = domain->boxhi[k];
+    hello.periodic[k] = domain->periodicity[k] != 0;
+  }
+  hello.depth = hello.box_hi[2] - hello.box_lo[2];
+}
+
+void SolidHello::forces(Hello& hello) const {
+  bool buoyancy = false;
+  for (int i = 0; i < modify->nfix; ++i) {
+    if (std::string(modify->fix[i]->style) == "buoyancy") buoyancy = true;
+    auto* gravity = dynamic_cast<LAMMPS_NS::FixGravity*>(modify->fix[i]);
+    if (!gravity) continue;
+    double g[3];
+    gravity->get_gravity(g);
+    for (int k = 0; k < 3; ++k) hello.gravity[k] += g[k];
+  }
+  // Without a fix of its own the solid leaves buoyancy to whatever the fluid's scene says.
+  const auto fluid_says = hello.buoyancy;
+  hello.buoyancy = buoyancy ? protocol::Buoyancy::BySolid : fluid_says;
+}
+
+void SolidHello::particles(Hello& hello) const {
+  double least[2] = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  double most[2] = {0.0, 0.0};
+  std::int64_t count = 0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit_)) continue;
+    ++count;
+    const double r = atom->radius[i];
+    const double density = atom->rmass[i] / particle_volume(domain->dimension, r, hello.depth);
+    const double values[2] = {r, density};
+    for (int k = 0; k < 2; ++k) {
+      least[k] = std::min(least[k], values[k]);
+      most[k] = std::max(most[k], values[k]);
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_DOUBLE, MPI_MIN, world);
+  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, world);
+  hello.particles = count;
+  if (count == 0) return;
+  hello.radius = protocol::Range{least[0], most[0]};
+  hello.density = protocol::Range{least[1], most[1]};
+}
+
+}  // namespace dem

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <pointers.h>
+
+#include "protocol/messages.h"
+
+namespace dem {
+
+/// Reads from a set-up LIGGGHTS what the fluid must agree on.
+class SolidHello : protected LAMMPS_NS::Pointers {
+ public:
+  SolidHello(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps);
+
+  /// Collective over the DEM ranks. Fails with LIGGGHTS' own error where the set-up cannot couple.
+  protocol::Hello collect();
+
+ private:
+  void geometry(protocol::Hello& hello) const;
+  void forces(protocol::Hello& hello) const;
+  void particles(protocol::Hello& hello) const;
+  int groupbit_, substeps_;
+};
+
+/// Volume of a particle: a sphere, or in 2D a disc of the given depth.
+double particle_volume(int dimension, double radius, double depth);
+
+}  // namespace dem

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "protocol/hdf5_file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+namespace protocol::hdf5 {
+
+Handle::Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {
+  if (id < 0) throw std::runtime_error("HDF5 failed to " + what);
+}
+
+void check(herr_t status, const std::string& what) {
+  if (status < 0) throw std::runtime_error("HDF5 failed to " + what);
+}
+
+Handle open_file(const std::string& path, Open mode) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // our exceptions speak instead of its stack dump
+  const bool creates = mode == Open::Create;
+  std::FILE* probe = std::fopen(path.c_str(), creates || mode == Open::Append ? "ab" : "rb");
+  if (!probe)
+    throw std::runtime_error("cannot open " + path + ": " + std::strerror(errno) +
+                             (creates ? "; choose a folder that exists and is writable" : ""));
+  std::fclose(probe);
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make access properties");
+  check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "set the version");
+  const std::string what = "open " + path + " (is it a complete HDF5 file?)";
+  switch (mode) {
+    case Open::Create:
+      return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, what};
+    case Open::Append:
+      return {H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose, what};
+    case Open::Read:
+      return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose, what};
+    case Open::ReadWhileWritten:
+      return {H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access), H5Fclose, what};
+  }
+  return {};
+}
+
+namespace {
+
+Handle text_type(std::size_t size) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
+  check(H5Tset_size(type, size ? size : 1), "size a text");
+  check(H5Tset_cset(type, H5T_CSET_UTF8), "set UTF-8");
+  return type;
+}
+
+void write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, "create attribute " + name);
+  check(H5Awrite(attribute, type, value), "write attribute " + name);
+}
+
+}  // namespace
+
+void set_attribute(hid_t object, const std::string& name, const std::string& text) {
+  write_attribute(object, name, text_type(text.size()), text.c_str());
+}
+void set_attribute(hid_t object, const std::string& name, double value) {
+  write_attribute(object, name, H5T_NATIVE_DOUBLE, &value);
+}
+void set_attribute(hid_t object, const std::string& name, std::int64_t value) {
+  write_attribute(object, name, H5T_NATIVE_INT64, &value);
+}
+
+std::string text_attribute(hid_t object, const std::string& name) {
+  const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose,
+                         "read attribute " + name);
+  const Handle type(H5Aget_type(attribute), H5Tclose, "read a type");
+  std::string text(H5Tget_size(type), '\0');
+  check(H5Aread(attribute, type, text.data()), "read attribute " + name);
+  text.resize(std::strlen(text.c_str()));
+  return text;
+}
+
+std::int64_t integer_attribute(hid_t object, const std::string& name) {
+  const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose,
+                         "read attribute " + name);
+  std::int64_t value = 0;
+  check(H5Aread(attribute, H5T_NATIVE_INT64, &value), "read attribute " + name);
+  return value;
+}
+
+}  // namespace protocol::hdf5

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+/// What the two programs say to each other: plain data, SI units, no behaviour.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace protocol {
+
+inline constexpr std::uint32_t kProtocolVersion = 1;
+
+using Vec3 = std::array<double, 3>;
+
+enum class Role : std::uint32_t { Fluid = 1, Solid = 2 };
+
+/// The side that adds the buoyant force -rho_f V g to a particle. Exactly one may.
+enum class Buoyancy : std::uint32_t { ByFluid = 0, BySolid = 1, None = 2 };
+
+/// Serial: the fluid advances an interval, then the solid, in turn.
+enum class Schedule : std::uint32_t { Serial = 0 };
+
+struct Range {
+  double lo = 0.0, hi = 0.0;
+};
+
+/// A number or text that the scene offers to the solid program's script under a name.
+struct Variable {
+  std::string name, value;
+};
+
+/// Everything that both sides must agree on before the first step.
+struct Hello {
+  std::uint32_t version = kProtocolVersion;
+  Role role = Role::Fluid;
+  std::string program;          ///< e.g. "lbm"
+  std::string program_version;  ///< for the log only
+  std::uint32_t dimension = 2;
+  Vec3 box_lo{}, box_hi{};                 ///< [m]; in 2D z spans the depth
+  std::array<std::uint8_t, 3> periodic{};  ///< one flag an axis; z is not compared in 2D
+  double depth = 1.0;                      ///< [m], 2D only: forces are those of this depth
+  std::string units = "SI";
+  Vec3 gravity{};  ///< [m/s^2]
+  Buoyancy buoyancy = Buoyancy::ByFluid;
+  double step = 0.0;              ///< this side's own time step [s]
+  std::uint32_t fluid_steps = 1;  ///< fluid steps a coupling interval
+  std::uint32_t solid_steps = 1;  ///< solid steps a coupling interval (substeps)
+  std::int64_t first_interval = 0;
+  Schedule schedule = Schedule::Serial;
+  std::uint64_t features = 0;             ///< bit flags of later protocol features; 0 today
+  std::optional<std::int64_t> particles;  ///< absent: this side does not care
+  std::optional<Range> radius;            ///< [m]
+  std::optional<Range> density;           ///< mass / (volume, in 2D pi r^2 depth) [kg/m^3]
+  Vec3 subdomain_lo{}, subdomain_hi{};    ///< of the sending rank [m]; routes particles
+  double reach = 0.0;               ///< fluid: how far beyond a particle's surface it acts [m]
+  std::vector<Variable> variables;  ///< fluid only: offered to the solid's script
+};
+
+/// The verdict on the partner's hello. A refusal lists every disagreement.
+struct Answer {
+  bool accept = true;
+  std::vector<std::string> reasons;
+};
+
+/// Flags of a step; combined with |.
+enum StepFlags : std::uint32_t {
+  kContinue = 0,
+  kLast = 1,  ///< states only: the final positions; the fluid does not advance any more
+  kStop = 2,  ///< loads only: send one more state, flagged kLast, and leave
+  kCheckpoint = 4,
+};
+
+struct StepHeader {
+  std::int64_t interval = 0;  ///< coupling interval, counted from 0
+  double time = 0.0;          ///< [s]
+  std::uint32_t flags = kContinue;
+};
+
+/// Motion of one particle at the beginning of an interval.
+struct State {
+  std::int64_t id = 0;
+  Vec3 x{}, v{}, omega{};  ///< [m], [m/s], [rad/s]
+};
+
+/// What rarely changes: sent with a particle's first state and whenever it differs.
+struct Shape {
+  std::int64_t id = 0;
+  double radius = 0.0;   ///< [m]
+  double mass = 0.0;     ///< [kg], in 2D of the agreed depth
+  double inertia = 0.0;  ///< about the centre [kg m^2]
+  std::int64_t type = 1;
+};
+
+/// Mean hydrodynamic load on one particle over an interval, about its centre.
+struct Load {
+  std::int64_t id = 0;
+  Vec3 force{}, torque{};  ///< [N], [N m]
+};
+
+struct StateBatch {
+  StepHeader head;
+  std::vector<State> states;
+  std::vector<Shape> shapes;
+};
+
+struct LoadBatch {
+  StepHeader head;
+  std::vector<Load> loads;
+};
+
+/// A side leaves in good order.
+struct Goodbye {
+  std::string reason;
+};
+
+/// A side cannot go on. Overtakes everything else in flight.
+struct Fault {
+  std::int32_t exit_code = 1;
+  std::string reason;
+};
+
+/// "I have read your fault and cleaned up; you need not wait for me."
+struct Farewell {};
+
+static_assert(sizeof(State) == 80 && sizeof(Shape) == 40 && sizeof(Load) == 56,
+              "records travel as raw memory: no padding");
+static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Shape> &&
+              std::is_trivially_copyable_v<Load>);
+
+}  // namespace protocol

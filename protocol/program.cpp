@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "protocol/program.h"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+namespace protocol {
+
+namespace {
+
+constexpr double kFarewellSeconds = 4.0;
+volatile std::sig_atomic_t caught = 0;
+
+void note_signal(int signal) {
+  caught = signal;
+}
+
+}  // namespace
+
+void catch_signals() {
+  for (const int signal : {SIGTERM, SIGINT}) std::signal(signal, note_signal);
+}
+
+void throw_if_signalled() {
+  if (!caught) return;
+  throw ProtocolError(
+      fmt::format("ended by signal {}: the partner or mpirun died, or somebody stopped the job",
+                  static_cast<int>(caught)));
+}
+
+int exit_code_of(const std::exception& error) {
+  const auto* known = dynamic_cast<const ProtocolError*>(&error);
+  return known ? known->exit_code() : kFault;
+}
+
+int leave_after(const std::exception& error, const std::string& program, Channel* channel) {
+  const int code = exit_code_of(error);
+  const auto* from_peer = dynamic_cast<const PeerFault*>(&error);
+  const bool refusal = dynamic_cast<const Refusal*>(&error) != nullptr;
+  if (!channel || channel->local_rank() == 0) {
+    std::fflush(stdout);
+    if (from_peer)
+      fmt::print(stderr, "{} | error | the {} program stopped: {}\n", program,
+                 channel ? channel->remote_name() : "other", error.what());
+    else
+      fmt::print(stderr, "{} | error | {}\n", program, error.what());
+    std::fflush(stderr);
+  }
+  if (refusal) return code;
+  if (caught) abort_job(code);  // mpirun is ending the job: nobody is left to talk to
+  if (channel && from_peer) {
+    channel->say_farewell();
+    // the partner ends the job with its own exit code; be patient with it for a moment
+    channel->await_farewell(kFarewellSeconds);
+  } else if (channel) {
+    channel->raise({code, error.what()});
+    channel->await_farewell(kFarewellSeconds);
+  }
+  abort_job(code);
+}
+
+void abort_job(int exit_code) {
+  std::fflush(stdout);
+  std::fflush(stderr);
+  int initialized = 0, finalized = 0;
+  MPI_Initialized(&initialized);
+  MPI_Finalized(&finalized);
+  if (initialized && !finalized) PMPI_Abort(MPI_COMM_WORLD, exit_code);
+  std::_Exit(exit_code);
+}
+
+}  // namespace protocol

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "protocol/messages.h"
+
+namespace protocol {
+
+/// Does a particle act on the subdomain of the fluid rank that sent `fluid`, itself or as a
+/// periodic image? Positions may lie outside the box: an engine wraps when it likes.
+/// @param x       centre [m]
+/// @param radius  [m]; the fluid's reach is added
+bool touches(const Hello& fluid, const Vec3& x, double radius);
+
+}  // namespace protocol

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+/// The order of messages, from both sides. Any number of ranks a side; no collectives.
+///
+///   fluid rank                                solid rank
+///   Hello          ──── to every rank ────►   takes the offered variables, runs its script
+///   checks         ◄─── Hello ────────────
+///   Answer         ◄──────────────────────►   Answer           (every reason of both, to both)
+///   advances       ◄─── States(k) ────────    x, v, ω at t_k
+///   Loads(k)       ────────────────────────►  substeps to t_{k+1}
+///   …                                          …
+///   does not move  ◄─── States(n) | last ──   or Goodbye at any k
+#pragma once
+
+#include <map>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "protocol/channel.h"
+
+namespace protocol {
+
+struct Particle {
+  State state;
+  Shape shape;
+};
+
+/// What the solid side sent for one interval, merged over its ranks and ordered by id.
+struct Arrival {
+  StepHeader head;
+  std::vector<Particle> particles;
+  std::optional<std::string> goodbye;  ///< the solid left in good order; no particles then
+};
+
+class FluidSession {
+ public:
+  /// Sends `hello` to every solid rank. `channel` must outlive the session.
+  /// @param timeout  longest wait for the partner [s]
+  FluidSession(Channel& channel, Hello hello, double timeout);
+
+  /// Waits for the solid's hello and settles. @return the hello of solid rank 0
+  /// @throws Refusal, PeerFault, Timeout, BadMessage
+  const Hello& agree();
+
+  /// Waits for the states of the next interval.
+  /// @throws BadMessage  wrong interval, unknown shape, double id, a value that is not finite
+  const Arrival& receive();
+
+  /// Answers the last arrival. @param loads  in the order of its particles
+  void answer(std::span<const Load> loads, std::uint32_t flags = kContinue);
+
+  double waited() const { return waited_; }  ///< seconds spent in waits so far
+
+ private:
+  void learn_shapes(const StateBatch& batch);
+  void merge(const std::vector<StateBatch>& batches);
+
+  Channel& channel_;
+  Hello mine_, partner_;
+  double timeout_, waited_ = 0.0;
+  std::int64_t next_interval_;
+  std::unordered_map<std::int64_t, Shape> shapes_;
+  Arrival arrival_;
+  std::vector<std::vector<std::size_t>> order_;  // [solid rank][record] -> index in arrival_
+};
+
+class SolidSession {
+ public:
+  /// Waits for the hello of every fluid rank. `channel` must outlive the session.
+  SolidSession(Channel& channel, double timeout);
+
+  /// Hello of fluid rank 0; its variables are for the script.
+  const Hello& fluid() const { return fluid_.front(); }
+
+  void set_timeout(double seconds) { timeout_ = seconds; }
+  /// Goes on over another channel to the same partner, e.g. a recording one.
+  void use(Channel& channel) { channel_ = &channel; }
+
+  /// Sends `hello`, settles. @throws Refusal, PeerFault, Timeout, BadMessage
+  void agree(const Hello& hello);
+
+  struct Reply {
+    std::uint32_t flags = kContinue;
+    std::span<const Load> loads;  ///< in the order of the states; valid until the next exchange
+  };
+  /// Sends this rank's states and returns their loads, summed over fluid ranks in rank order; a
+  /// particle that touches no fluid has none. With kLast nothing is waited for.
+  /// @param states, shapes  one each a particle, same order
+  Reply exchange(const StepHeader& head, std::span<const State> states,
+                 std::span<const Shape> shapes);
+
+  /// Leaves in good order instead of the next states.
+  void goodbye(const std::string& reason);
+
+  double waited() const { return waited_; }
+
+ private:
+  void send_states(int rank, const StepHeader& head, std::span<const State> states,
+                   std::span<const Shape> shapes);
+  std::uint32_t add_loads(int rank, const StepHeader& head);
+
+  Channel* channel_;
+  double timeout_, waited_ = 0.0;
+  std::vector<Hello> fluid_;                                   // [fluid rank]
+  std::vector<std::unordered_map<std::int64_t, Shape>> told_;  // [fluid rank] shapes it knows
+  std::vector<std::vector<std::size_t>> sent_;                 // [fluid rank] states it got
+  std::vector<Load> loads_;
+};
+
+}  // namespace protocol

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Everything that can go wrong between the programs: both end within ten seconds, with the right
+/// reason and exit code. Nothing hangs.
+#include <gtest/gtest.h>
+
+#include "tests/support/coupled_job.h"
+
+namespace {
+
+using test::JobResult;
+using test::kLbm;
+using test::kLiggghts;
+using test::mpirun;
+using test::SettlingDisc;
+
+constexpr double kLimit = 10.0;
+const std::string kPeer = test::kBin + "/scripted_peer";
+
+void expect_end(const JobResult& job, int exit_code, const std::vector<std::string>& words) {
+  EXPECT_FALSE(job.timed_out) << "hangs: " << job.output;
+  EXPECT_LT(job.seconds, kLimit) << job.output;
+  EXPECT_EQ(job.exit_code, exit_code) << job.output;
+  for (const auto& word : words)
+    EXPECT_NE(job.output.find(word), std::string::npos) << word << " not in:\n" << job.output;
+}
+
+// ---- the two disagree: refusal, exit 2, the same text on both sides
+// --------------------------------
+
+struct Mismatch {
+  std::string name, from, to, reason;
+};
+void PrintTo(const Mismatch& m, std::ostream* out) {
+  *out << m.name;
+}
+
+class MismatchTest : public testing::TestWithParam<Mismatch> {};
+
+TEST_P(MismatchTest, IsRefusedByBothWithTheReason) {
+  SettlingDisc scene;
+  scene.change_script(GetParam().from, GetParam().to);
+  const auto job = scene.run("", 1, 30.0);
+  expect_end(job, 2, {"lbm | error | fluid and solid disagree", GetParam().reason});
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = job.output.find(GetParam().reason, at)) != std::string::npos; ++at)
+    ++count;
+  EXPECT_EQ(count, 2U) << "both programs say it:\n" << job.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Refusal, MismatchTest,
+    testing::Values(
+        Mismatch{"box", "${x_lo} ${x_hi}", "${x_lo} 0.0201",
+                 "box x: fluid 0 … 0.02 m, solid 0 … 0.0201 m"},
+        Mismatch{"step_ratio", "every ${substeps}", "every 7", "substeps: fluid's scene says"},
+        Mismatch{"step", "timestep         ${solid_step}", "timestep 1.7e-5",
+                 "coupling interval: fluid"},
+        Mismatch{"periodicity", "${boundary_x} ${boundary_y}", "p ${boundary_y}",
+                 "boundary x: fluid not periodic, solid periodic"},
+        Mismatch{"gravity", "gravity ${gravity} vector", "gravity 9.81 vector",
+                 "gravity: fluid (0, -9.8, 0)"},
+        Mismatch{"depth", "${z_lo} ${z_hi}", "-0.25 0.25", "depth: fluid 1 m, solid 0.5 m"},
+        Mismatch{"density", "equal ${density_max}*${depth}", "equal 2*${density_max}*${depth}",
+                 "particle density: fluid's scene says 1250"},
+        Mismatch{"radius", "diameter ${diameter_max} density", "diameter 0.002 density",
+                 "particle radius"}),
+    [](const auto& info) { return info.param.name; });
+
+TEST(Refusal, ThreeDimensionsAgainstTwo) {
+  SettlingDisc scene;
+  scene.change_script("dimension        2", "dimension 3");
+  scene.change_script("fix              flat all enforce2d", "");
+  expect_end(scene.run("", 1, 30.0), 2,
+             {"dimension: fluid 2, solid 3", "lbm | error", "liggghts | error"});
+}
+
+TEST(Refusal, ListsEveryDisagreementAtOnce) {
+  SettlingDisc scene;
+  scene.change_script("every ${substeps}", "every 7");
+  scene.change_script("gravity ${gravity} vector", "gravity 9.81 vector");
+  scene.change_script("${z_lo} ${z_hi}", "-0.25 0.25");
+  expect_end(scene.run("", 2, 30.0), 2, {"substeps:", "gravity:", "depth:", "coupling interval:"});
+}
+
+// ---- bad input: exit 2
+// -----------------------------------------------------------------------------
+
+TEST(BadInput, OfTheSceneEndsBothWithItsText) {
+  SettlingDisc scene;
+  scene.change_scene("kinematic_viscosity = 1e-5", "kinematic_viscosity = -1e-5");
+  expect_end(scene.run(), 2,
+             {"lbm | error | scene.toml:13: fluid.kinematic_viscosity = -1e-05",
+              "liggghts | error | the fluid program stopped: scene.toml:13"});
+}
+
+TEST(BadInput, MissingSceneFile) {
+  SettlingDisc scene;
+  expect_end(scene.run("nowhere.toml"), 2, {"lbm | error | nowhere.toml: no such file"});
+}
+
+TEST(BadInput, MissingScript) {
+  SettlingDisc scene;
+  expect_end(scene.run("", 1, 30.0, "-in nowhere.liggghts"), 2,
+             {"liggghts | error | nowhere.liggghts: no such script",
+              "lbm | error | the solid program stopped"});
+}
+
+TEST(BadInput, OutputFolderThatCannotBe) {
+  SettlingDisc scene;
+  expect_end(scene.run("--out /proc/nowhere"), 2, {"lbm | error | /proc/nowhere"});
+}
+
+TEST(BadInput, TraceThatCannotBeWritten) {
+  SettlingDisc scene;
+  expect_end(scene.run("--record /nowhere/t.h5"), 1, {"cannot open /nowhere/t.h5"});
+}
+
+// ---- errors on the way
+// -----------------------------------------------------------------------------
+
+TEST(ScriptError, BeforeTheCoupling) {
+  SettlingDisc scene;
+  scene.change_script("pair_coeff", "pair_coefficient");
+  expect_end(scene.run(), 1,
+             {"lbm | error | the solid program stopped: ERROR: Unknown command: pair_coefficient"});
+}
+
+TEST(ScriptError, BeforeTheCouplingOnThreeRanks) {
+  SettlingDisc scene;
+  scene.change_script("pair_coeff", "pair_coefficient");
+  expect_end(scene.run("", 3), 1, {"Unknown command: pair_coefficient"});
+}
+
+TEST(ScriptError, DuringTheRun) {
+  SettlingDisc scene;  // the disc leaves the box and LIGGGHTS misses an atom
+  scene.change_scene("end_time = 0.04", "end_time = 1.0");
+  scene.change_script("fix              floor", "#");
+  scene.change_script("${particle1_y}", "0.0004");
+  scene.change_script("thermo           5000",
+                      "thermo 100\nthermo_modify lost error\nset atom 1 vy -0.05");
+  expect_end(scene.run(), 1, {"lbm | error | the solid program stopped: ERROR: Lost atoms"});
+}
+
+TEST(Numerics, AStateThatIsNotFiniteIsNamed) {
+  SettlingDisc scene;
+  scene.change_script("run              ${solid_steps_total}",
+                      "set atom 1 vx 1e400\nrun ${solid_steps_total}");
+  expect_end(scene.run(), 3,
+             {"particle 1: velocity is (inf", "liggghts | error | the fluid program stopped"});
+}
+
+TEST(Numerics, ANaNInTheStatesOnTheWay) {
+  SettlingDisc scene;
+  expect_end(test::run(mpirun({kLbm}, {kPeer + " solid nan"}), scene.folder(), 30.0), 3,
+             {"lbm | error | particle 4: velocity is (0, nan, 0) at interval 3"});
+}
+
+TEST(Numerics, ANaNInTheLoadsIsNamedByTheSolid) {
+  SettlingDisc scene;
+  const test::TemporaryFolder folder;
+  folder.write(
+      "in.liggghts",
+      "dimension 2\nunits si\natom_style granular\natom_modify map array sort 0 0\nboundary p p p\nnewton "
+      "off\n"
+      "communicate single vel yes\nregion box block 0 1 0 1 -0.5 0.5 units box\ncreate_box 1 box\n"
+      "neighbor 0.02 bin\ncreate_atoms 1 single 0.5 0.5 0 units box\nset type 1 diameter 0.1 "
+      "density 1000\n"
+      "pair_style none\ntimestep 1e-3\nfix move all nve/sphere\nfix c all lbm/couple every 10\nrun "
+      "1000\n");
+  expect_end(
+      test::run(mpirun({kPeer + " fluid nan"}, {kLiggghts + " -screen none"}), folder.path(), 30.0),
+      3, {"liggghts | error | particle 1: hydrodynamic force is (nan"});
+}
+
+TEST(Numerics, AFluidThatGetsTooFastStopsBothWithStepPlaceAndValue) {
+  SettlingDisc scene;
+  scene.change_scene("velocity_scale = 0.06", "velocity_scale = 0.004");
+  scene.change_scene("end_time = 0.04", "end_time = 1.0");
+  scene.change_scene("kinematic_viscosity = 1e-5", "kinematic_viscosity = 1e-6");
+  expect_end(scene.run(), 3,
+             {"lbm | error | interval ", "moves at ", "raise fluid.velocity_scale",
+              "liggghts | error | the fluid program stopped: interval"});
+}
+
+/// Runs a job that would last for hours and kills one of its programs after two seconds.
+JobResult run_and_kill(const std::string& program) {
+  SettlingDisc scene;
+  scene.change_scene("end_time = 0.04", "end_time = 1000.0");
+  const std::string job = mpirun({kLbm + " --progress none"}, {kLiggghts + " -screen none"});
+  return test::run(
+      "(" + job + ") & job=$!; sleep 2; pkill -KILL -x -P $job " + program + "; wait $job",
+      scene.folder(), 30.0);
+}
+
+TEST(Lost, KilledFluid) {
+  expect_end(run_and_kill("lbm"), 137, {"lbm", "signal 9"});
+}
+
+TEST(Lost, KilledSolid) {
+  expect_end(run_and_kill("liggghts"), 137,
+             {"liggghts", "signal 9", "lbm | error | ended by signal 15"});
+}
+
+TEST(Lost, SolidKilledAtItsFirstStep) {
+  SettlingDisc scene;
+  expect_end(test::run(mpirun({kLbm}, {kPeer + " solid die"}), scene.folder(), 30.0), 137,
+             {"signal 9"});
+}
+
+TEST(Lost, ASilentSolidIsNamedAfterTheTimeOut) {
+  SettlingDisc scene;
+  scene.change_scene("timeout = 60.0", "timeout = 1.0");
+  expect_end(test::run(mpirun({kLbm}, {kPeer + " solid silent"}), scene.folder(), 30.0), 1,
+             {"no answer from solid rank 0 for 1 s while waiting for the states of interval 0"});
+}
+
+TEST(Lost, ASilentFluidIsNamedAfterTheTimeOut) {
+  SettlingDisc scene;
+  scene.change_script("every ${substeps}", "every 10 timeout 1");
+  for (const char* name : {"x_lo", "y_lo"})
+    scene.change_script(std::string("${") + name + "}", "0");
+  for (const auto& [name, value] : {std::pair{"x_hi", "0.02"},
+                                    {"y_hi", "0.06"},
+                                    {"z_lo", "-0.5"},
+                                    {"z_hi", "0.5"},
+                                    {"boundary_x", "f"},
+                                    {"boundary_y", "f"},
+                                    {"boundary_z", "p"},
+                                    {"diameter_max", "0.0025"},
+                                    {"density_max", "1250"},
+                                    {"depth", "1"},
+                                    {"particle1_x", "0.01"},
+                                    {"particle1_y", "0.04"},
+                                    {"damping_ratio", "0.5"},
+                                    {"contact_stiffness", "2e5"},
+                                    {"gravity", "9.8"},
+                                    {"gravity_x", "0"},
+                                    {"gravity_y", "-1"},
+                                    {"solid_step", "1e-5"},
+                                    {"solid_steps_total", "1000"}})
+    scene.change_script(std::string("${") + name + "}", value);
+  expect_end(test::run(mpirun({kPeer + " fluid silent"}, {kLiggghts + " -screen none"}),
+                       scene.folder(), 30.0),
+             1, {"no answer from fluid rank 0 for 1 s"});
+}
+
+// ---- started wrongly
+// -------------------------------------------------------------------------------
+
+TEST(Launch, TheFluidAlone) {
+  SettlingDisc scene;
+  expect_end(test::run(kLbm, scene.folder(), 30.0), 2, {"no solid program was started beside lbm"});
+}
+
+TEST(Launch, TheSolidAlone) {
+  SettlingDisc scene;
+  const auto line = test::run(kLbm + " check --liggghts-vars", scene.folder(), 20.0);
+  std::string variables = line.output;
+  variables.erase(variables.find_last_not_of('\n') + 1);
+  const std::string as_root = "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; ";
+  expect_end(test::run(as_root + kLiggghts + " -in in.liggghts " + variables, scene.folder(), 30.0),
+             1, {"no fluid program was started beside liggghts"});
+}
+
+TEST(Launch, TheFluidTwice) {
+  SettlingDisc scene;
+  expect_end(test::run(mpirun({kLbm}, {kLbm}), scene.folder(), 30.0), 2,
+             {"2 ranks of lbm were started"});
+}
+
+TEST(Launch, TheSolidTwice) {
+  SettlingDisc scene;
+  const auto line = test::run(kLbm + " check --liggghts-vars", scene.folder(), 20.0);
+  std::string variables = line.output;
+  variables.erase(variables.find_last_not_of('\n') + 1);
+  const std::string solid = kLiggghts + " -in in.liggghts " + variables;
+  expect_end(test::run(mpirun({solid}, {solid}), scene.folder(), 30.0), 1,
+             {"no fluid program was started beside liggghts"});
+}
+
+TEST(Launch, TheSystemsStockLiggghts) {
+  SettlingDisc scene;
+  expect_end(test::run(mpirun({kLbm}, {"/usr/bin/liggghts -in in.liggghts"}), scene.folder(), 30.0),
+             1,
+             {"lbm | error | rank(s) 1 of this MPI job did not say",
+              "the system's stock liggghts cannot couple"});
+}
+
+TEST(Launch, AStranger) {
+  SettlingDisc scene;
+  const test::TemporaryFolder folder;
+  folder.write("stranger.c",
+               "#include <mpi.h>\n#include <unistd.h>\nint main(int c, char** v) { MPI_Init(&c, "
+               "&v); sleep(100); }\n");
+  ASSERT_EQ(test::run("mpicc stranger.c -o stranger", folder.path(), 60.0).exit_code, 0);
+  expect_end(test::run(mpirun({folder.path() + "/stranger"}, {kLiggghts + " -screen none"}),
+                       scene.folder(), 30.0),
+             1, {"liggghts | error | rank(s) 0 of this MPI job did not say"});
+}
+
+}  // namespace

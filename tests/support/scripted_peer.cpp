@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+/// A program that plays one side of a coupled job by a script that a test needs:
+///   scripted_peer fluid impulse N         load of interval k is (k+1) times a constant; N
+///   intervals scripted_peer fluid nan               answers a load that is not finite
+///   scripted_peer fluid silent            says hello and nothing more
+///   scripted_peer solid insert            an empty box, late insertion, removal, return, then the
+///   end scripted_peer solid nan               a state that is not finite scripted_peer solid
+///   silent            agrees and sends nothing scripted_peer solid die               agrees, sends
+///   one state and is killed
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "protocol/mpi_channel.h"
+#include "protocol/program.h"
+#include "protocol/session.h"
+
+namespace {
+
+using namespace protocol;
+
+constexpr double kTimeout = 30.0;
+
+/// A 2D box of 1 × 1 m for tests of the fix: ten solid steps of 1 ms an interval.
+Hello box_hello() {
+  Hello h;
+  h.program = "scripted_peer";
+  h.program_version = "test";
+  h.box_lo = {0.0, 0.0, -0.5};
+  h.box_hi = {1.0, 1.0, 0.5};
+  h.periodic = {1, 1, 1};
+  h.step = 1e-2;
+  h.solid_steps = 10;
+  h.buoyancy = Buoyancy::None;
+  h.subdomain_lo = h.box_lo;
+  h.subdomain_hi = h.box_hi;
+  return h;
+}
+
+void fluid(Channel& channel, const std::string& script, int intervals) {
+  FluidSession session(channel, box_hello(), kTimeout);
+  if (script == "silent") pause();
+  session.agree();
+  for (int k = 0;; ++k) {
+    const Arrival& arrival = session.receive();
+    if (arrival.goodbye) {
+      fmt::print("goodbye: {}\n", *arrival.goodbye);
+      return;
+    }
+    for (const Particle& p : arrival.particles)
+      fmt::print("state {} {} {:.17g} {:.17g} {:.17g} {:.17g}\n", k, p.state.id, p.state.x[0],
+                 p.state.v[0], p.state.v[1], p.state.omega[2]);
+    if (arrival.head.flags & kLast) return;
+    std::vector<Load> loads;
+    for (const Particle& p : arrival.particles)
+      loads.push_back(
+          {p.state.id, {0.25 * (k + 1), -0.5 * (k + 1), 0.0}, {0.0, 0.0, 0.125 * (k + 1)}});
+    if (script == "nan") {
+      // past the session's own check, as a foreign program without one would send it
+      loads[0].force[0] = std::numeric_limits<double>::quiet_NaN();
+      channel.send(0, encode(LoadBatch{arrival.head, loads}), {kTimeout, ""});
+      pause();
+    }
+    session.answer(loads, k + 1 == intervals ? kStop : kContinue);
+  }
+}
+
+State at(std::int64_t id, double x, double y) {
+  State s;
+  s.id = id;
+  s.x = {x, y, 0.0};
+  return s;
+}
+
+/// Plays the solid of whatever scene the fluid has read: it repeats the fluid's own numbers.
+void solid(Channel& channel, const std::string& script) {
+  SolidSession session(channel, kTimeout);
+  Hello hello = session.fluid();
+  hello.role = Role::Solid;
+  hello.program = "scripted_peer";
+  hello.step = hello.step * hello.fluid_steps / hello.solid_steps;
+  hello.particles = 0;
+  hello.radius.reset();
+  hello.density.reset();
+  session.agree(hello);
+  if (script == "silent") pause();
+  const double r = 0.00125, mass = 1250.0 * std::numbers::pi * r * r;
+  bool stop = false;
+  for (std::int64_t k = 0;; ++k) {
+    std::vector<State> states;
+    if (script != "insert" || k >= 5) states.push_back(at(4, 0.01, 0.04));
+    if (script == "insert" && k >= 8 && k < 20) states.push_back(at(2, 0.005, 0.02));
+    if (script == "nan" && k == 3) states[0].v[1] = std::numeric_limits<double>::quiet_NaN();
+    std::vector<Shape> shapes;
+    for (const State& s : states) shapes.push_back({s.id, r, mass, 0.5 * mass * r * r, 1});
+    const auto reply = session.exchange({k, 0.0, stop ? kLast : kContinue}, states, shapes);
+    if (stop) return;
+    for (const Load& l : reply.loads) fmt::print("load {} {} {:.9g}\n", k, l.id, l.force[1]);
+    if (script == "die") kill(getpid(), SIGKILL);
+    stop = reply.flags & kStop;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string side = argc > 1 ? argv[1] : "", script = argc > 2 ? argv[2] : "";
+  MPI_Init(&argc, &argv);
+  catch_signals();
+  const Role role = side == "fluid" ? Role::Fluid : Role::Solid;
+  std::unique_ptr<Channel> channel;
+  World world;
+  int code = 0;
+  try {
+    world = connect(role);
+    channel = make_mpi_channel(world, role);
+    if (role == Role::Fluid)
+      fluid(*channel, script, argc > 3 ? std::atoi(argv[3]) : 3);
+    else
+      solid(*channel, script);
+  } catch (const std::exception& e) {
+    code = leave_after(e, "scripted_peer", channel.get());
+  }
+  channel.reset();
+  disconnect(world);
+  MPI_Finalize();
+  return code;
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/immersed/cover_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lbm_solver/immersed/weight.h"
+#include "lbm_solver/solver/fluid.h"
+
+namespace {
+
+using namespace lbm;
+
+const Domain kDomain{48, 40, Side::Wall, Side::Periodic};
+
+/// Three discs that overlap pairwise, so that cells hold two and three of them.
+std::vector<Disc> cluster() {
+  return {{1, {20.3, 20.1}, 5.0, {0.01, 0.0}, 0.001},
+          {2, {27.9, 20.6}, 4.0, {-0.02, 0.01}, 0.0},
+          {3, {24.4, 26.0}, 3.7, {0.0, -0.02}, -0.002}};
+}
+
+/// A fluid that moves, with the discs in it, after some steps.
+Fluid stirred(std::vector<Disc> discs) {
+  Fluid fluid(kDomain, {"trt", "layered_holdych", 0.8, 3.0 / 16});
+  for (int y = 0; y < kDomain.ny; ++y)
+    for (int x = 0; x < kDomain.nx; ++x)
+      fluid.set_equilibrium(x, y, 1.0, {0.02 * std::sin(0.3 * y), 0.03 * std::cos(0.2 * x)});
+  for (int step = 0; step < 5; ++step) {
+    fluid.place(discs);
+    fluid.step();
+  }
+  return fluid;
+}
+
+TEST(ImmersedWeight, HasItsLimits) {
+  EXPECT_EQ(immersed_weight(0.0, 0.8), 0.0);
+  EXPECT_EQ(immersed_weight(1.0, 0.8), 1.0);
+  EXPECT_EQ(immersed_weight(1.7, 0.8), 1.0);  // the sum of two solids may exceed one
+  EXPECT_NEAR(immersed_weight(0.5, 0.8), 0.5 * 0.3 / 0.8, 1e-15);
+}
+
+TEST(CoverMap, LoadsOfSharedCellsAddUpToTheWholeForce) {
+  const Fluid fluid = stirred(cluster());
+  Vec2 whole(0.0, 0.0), shared(0.0, 0.0);
+  for (int y = 0; y < kDomain.ny; ++y)
+    for (int b = 0; b < fluid.cover()->blocks_per_row(); ++b)
+      if (const auto* block = fluid.cover()->block(y, b))
+        for (int lane = 0; lane < kPackWidth; ++lane)
+          whole += Vec2(block->fx[lane], block->fy[lane]);
+  for (const DiscLoad& load : fluid.loads()) shared += load.force;
+  EXPECT_NEAR((whole - shared).norm(), 0.0, 1e-14);
+  EXPECT_GT(whole.norm(), 1e-3);
+}
+
+TEST(CoverMap, LoadsDoNotDependOnTheOrderOfTheDiscs) {
+  auto discs = cluster();
+  const auto reference = stirred(discs).loads();
+  std::sort(discs.begin(), discs.end(), [](const Disc& a, const Disc& b) { return a.id > b.id; });
+  const auto reversed = stirred(discs).loads();
+  for (int i = 0; i < 3; ++i) {
+    // sums of two or three fractions in another order: round-off only
+    EXPECT_NEAR((reference[i].force - reversed[2 - i].force).norm(), 0.0, 1e-14);
+    EXPECT_NEAR(reference[i].torque, reversed[2 - i].torque, 1e-13);
+  }
+}
+
+TEST(CoverMap, DiscsComeAndGo) {
+  CoverMap cover(kDomain, 0.8);
+  cover.update({});
+  EXPECT_EQ(cover.covered_blocks(), 0U);
+  const auto discs = cluster();
+  cover.update(discs);
+  EXPECT_EQ(cover.solid_fraction(20, 20), 1.0);
+  cover.update(std::vector<Disc>{discs[2]});
+  EXPECT_EQ(cover.solid_fraction(18, 18), 0.0);
+  EXPECT_EQ(cover.solid_fraction(24, 26), 1.0);
+  cover.update({});
+  EXPECT_EQ(cover.solid_fraction(24, 26), 0.0);
+  EXPECT_TRUE(cover.loads().empty());
+}
+
+TEST(CoverMap, NextCoveredSkipsPureFluid) {
+  CoverMap cover(kDomain, 0.8);
+  cover.update(std::vector<Disc>{{1, {40.5, 20.0}, 2.0, {0, 0}, 0}});
+  EXPECT_EQ(cover.next_covered(20, 0), 38 / kPackWidth);
+  EXPECT_EQ(cover.next_covered(3, 0), cover.blocks_per_row());
+}
+
+}  // namespace

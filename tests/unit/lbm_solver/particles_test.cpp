@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/coupling/particles.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace {
+
+using namespace lbm;
+
+const Units kUnits{1e-4, 2e-4, 1000.0, 0.5, {0.0, 0.0}};
+constexpr double kRadius = 1e-3;
+const double kFluidMass = 1000.0 * std::numbers::pi * kRadius * kRadius * 0.5;
+
+FluidScene fluid_scene() {
+  return {1000.0, 1e-5, {0.0, -9.8}, 0.05};
+}
+
+protocol::Particle particle(double vx, double omega) {
+  return {{9, {0.005, 0.01, 0.0}, {vx, 0.0, 0.0}, {0.0, 0.0, omega}}, {9, kRadius, 4e-3, 2e-9, 1}};
+}
+
+TEST(Particles, EntersLatticeUnits) {
+  Particles particles(kUnits, fluid_scene(), {});
+  particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
+  const auto discs = particles.discs(2e-4);
+  EXPECT_NEAR(discs[0].centre.x(), 50.0 + 0.02 * 2e-4 / 1e-4, 1e-12);  // moved on straight
+  EXPECT_NEAR(discs[0].radius, 10.0, 1e-12);
+  EXPECT_NEAR(discs[0].velocity.x(), 0.02 / 0.5, 1e-15);
+  EXPECT_NEAR(discs[0].spin, 30.0 * 2e-4, 1e-15);
+  EXPECT_NEAR(particles.max_speed(), 0.02 + 30.0 * kRadius, 1e-15);
+}
+
+TEST(Particles, LoadIsTheMeanInSiUnitsWithBuoyancy) {
+  Particles particles(kUnits, fluid_scene(), {});
+  particles.arrive(std::vector{particle(0.0, 0.0)}, 4e-4);
+  particles.add(std::vector<DiscLoad>{{{2.0, 0.0}, 4.0}});
+  particles.add(std::vector<DiscLoad>{{{4.0, 0.0}, 0.0}});
+  const auto load = particles.mean_loads(2)[0];
+  // one lattice unit of force: rho dx^3 depth / dt^2 (2D, a layer of thickness depth)
+  const double force = 1000.0 * 1e-12 * 0.5 / (2e-4 * 2e-4);
+  EXPECT_EQ(load.id, 9);
+  EXPECT_NEAR(load.force[0], 3.0 * force, 1e-12 * force);
+  EXPECT_NEAR(load.force[1], kFluidMass * 9.8, 1e-12);
+  EXPECT_NEAR(load.torque[2], 2.0 * force * 1e-4, 1e-15);
+}
+
+TEST(Particles, GivesBackTheInertiaOfTheFluidInside) {
+  CouplingScene coupling;
+  coupling.buoyancy = protocol::Buoyancy::None;
+  for (const bool on : {true, false}) {
+    coupling.inner_inertia = on;
+    Particles particles(kUnits, fluid_scene(), coupling);
+    particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
+    particles.add(std::vector<DiscLoad>(1));
+    EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);  // new: its past is unknown
+    particles.arrive(std::vector{particle(0.03, 32.0)}, 4e-4);
+    particles.add(std::vector<DiscLoad>(1));
+    const auto load = particles.mean_loads(1)[0];
+    EXPECT_NEAR(load.force[0], on ? kFluidMass * 0.01 / 4e-4 : 0.0, 1e-12);
+    EXPECT_NEAR(load.torque[2], on ? 0.5 * kFluidMass * kRadius * kRadius * 2.0 / 4e-4 : 0.0,
+                1e-15);
+  }
+}
+
+TEST(Particles, AParticleThatLeftAndCameBackHasNoPast) {
+  CouplingScene coupling;
+  coupling.buoyancy = protocol::Buoyancy::None;
+  Particles particles(kUnits, fluid_scene(), coupling);
+  particles.arrive(std::vector{particle(0.02, 0.0)}, 4e-4);
+  particles.arrive({}, 4e-4);
+  EXPECT_EQ(particles.discs(0.0).size(), 0U);
+  EXPECT_EQ(particles.mean_loads(1).size(), 0U);
+  particles.arrive(std::vector{particle(0.05, 0.0)}, 4e-4);
+  particles.add(std::vector<DiscLoad>(1));
+  EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);
+}
+
+}  // namespace

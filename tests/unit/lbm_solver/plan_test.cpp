@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/solver/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lbm_solver/io/scene_reader.h"
+#include "tests/unit/lbm_solver/scene_files.h"
+
+namespace {
+
+using namespace lbm;
+
+Scene settling_disc() {
+  return read_scene({BPLBM_SOURCE_DIR "/cases/settling_disc/scene.toml"});
+}
+
+TEST(Plan, ChoosesTheStepByMach) {
+  const Plan p = make_plan(settling_disc());
+  EXPECT_EQ(p.domain.nx, 160);
+  EXPECT_EQ(p.domain.ny, 480);
+  EXPECT_NEAR(p.lattice_speed, 10 * 0.06, 1e-3);
+  EXPECT_NE(p.step_limit.find("Mach"), std::string::npos);
+  EXPECT_NEAR(p.kernel.tau, 0.5 + 3.0 * 1e-5 * p.units.dt / (1.25e-4 * 1.25e-4), 1e-12);
+  EXPECT_NEAR(p.interval() * static_cast<double>(p.intervals), 1.0, 1e-12);  // ends on time
+  EXPECT_EQ(p.substeps, 12);
+}
+
+TEST(Plan, ChoosesTheStepByRelaxationTimeWhereTheFluidIsViscous) {
+  Scene s = settling_disc();
+  s.fluid.viscosity = 1e-3;
+  const Plan p = make_plan(s);
+  EXPECT_NE(p.step_limit.find("relaxation"), std::string::npos);
+  EXPECT_LE(p.kernel.tau, 1.5 + 1e-12);
+  EXPECT_GT(p.kernel.tau, 1.49);
+}
+
+TEST(Plan, WarnsWhereForcesGetNoisyAndWhereCellsAreFew) {
+  Scene s = settling_disc();
+  EXPECT_TRUE(make_plan(s).warnings.empty());
+  s.fluid.viscosity = 1e-6;
+  const auto noisy = make_plan(s).warnings;
+  ASSERT_EQ(noisy.size(), 1U);
+  EXPECT_NE(noisy[0].find("Re_h"), std::string::npos);
+  s = settling_disc();
+  s.numerics.cells_per_diameter = 2.5;
+  const auto few = make_plan(s).warnings;
+  ASSERT_FALSE(few.empty());
+  EXPECT_NE(few.back().find("D/Δx"), std::string::npos);
+}
+
+TEST(Plan, HelloOffersEveryNumberTheScriptNeeds) {
+  const Scene s = settling_disc();
+  const Plan p = make_plan(s);
+  const auto hello = make_hello(s, p);
+  const auto value = [&](const std::string& name) -> std::string {
+    for (const auto& v : hello.variables)
+      if (v.name == name) return v.value;
+    return "absent";
+  };
+  EXPECT_EQ(std::stod(value("solid_step")), p.interval() / p.substeps);  // text keeps every bit
+  EXPECT_EQ(value("x_hi"), "0.02");
+  EXPECT_EQ(value("boundary_y"), "f");
+  EXPECT_EQ(value("particle1_y"), "0.04");
+  EXPECT_EQ(value("damping_ratio"), "0.5");
+  EXPECT_EQ(value("solid_steps_total"), std::to_string(p.intervals * p.substeps));
+}
+
+}  // namespace

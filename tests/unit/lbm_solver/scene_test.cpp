@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include <gtest/gtest.h>
+
+#include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/scene_reader.h"
+#include "lbm_solver/solver/plan.h"
+#include "tests/unit/lbm_solver/scene_files.h"
+
+namespace {
+
+using namespace lbm;
+
+/// One way to spoil the good scene, and what the message must say.
+struct Spoiled {
+  std::string name, from, to;
+  std::vector<std::string> words;
+};
+
+void PrintTo(const Spoiled& s, std::ostream* out) {
+  *out << s.name;
+}
+
+class BadScene : public testing::TestWithParam<Spoiled> {};
+
+TEST_P(BadScene, IsNamedWithPlaceReasonAndRemedy) {
+  const Spoiled& s = GetParam();
+  const test::TemporaryFolder folder;
+  const std::string file =
+      folder.write("scene.toml", test::replaced(test::good_scene(), s.from, s.to));
+  try {
+    make_plan(read_scene({file}));
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    const std::string text = e.what();
+    EXPECT_EQ(e.exit_code(), 2);
+    EXPECT_NE(text.find("scene.toml"), std::string::npos) << text;
+    EXPECT_NE(text.find("; "), std::string::npos) << "no remedy in: " << text;
+    for (const auto& word : s.words) EXPECT_NE(text.find(word), std::string::npos) << text;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadScene,
+    testing::Values(
+        Spoiled{"unknown_key",
+                "depth = 1.0",
+                "deepness = 1.0",
+                {":7:", "box.deepness", "known here", "depth"}},
+        Spoiled{"unknown_table", "[run]", "[extra]\na = 1\n[run]", {"extra", "known"}},
+        Spoiled{"wrong_type",
+                "density = 1000.0",
+                "density = \"heavy\"",
+                {"fluid.density", "heavy", "not a number"}},
+        Spoiled{"missing_key",
+                "kinematic_viscosity = 1e-5",
+                "",
+                {"fluid.kinematic_viscosity", "missing"}},
+        Spoiled{"missing_table", "[run]\nend_time = 1.0", "[output2]", {"run", "missing"}},
+        Spoiled{"negative_viscosity",
+                "= 1e-5",
+                "= -1e-5",
+                {"kinematic_viscosity", "-1e-05", "positive"}},
+        Spoiled{"zero_viscosity", "= 1e-5", "= 0", {"kinematic_viscosity", "positive"}},
+        Spoiled{"not_finite", "= 1e-5", "= nan", {"kinematic_viscosity", "nan"}},
+        Spoiled{"disc_outside",
+                "[[0.01, 0.04]]",
+                "[[0.0195, 0.04]]",
+                {"particles.start", "0.0195", "outside"}},
+        Spoiled{"disc_too_wide",
+                "diameter = 0.0025",
+                "diameter = 0.025",
+                {"particles.diameter", "wider than the box"}},
+        Spoiled{"periodic_half",
+                "sides_x = \"wall\"",
+                "sides_x = \"periodic\"\norigin = [0.0, 0.0]\nsize_dummy = 1",
+                {"size_dummy"}},
+        Spoiled{"unknown_collision", "\"trt\"", "\"magic\"", {"numerics.collision", "bgk, trt"}},
+        Spoiled{"unknown_term",
+                "\"layered_holdych\"",
+                "\"holy\"",
+                {"coupling.solid_term", "noble_torczynski"}},
+        Spoiled{"cell_and_cells",
+                "cells_per_diameter = 20",
+                "cells_per_diameter = 20\ncell = 1e-4",
+                {"numerics.cell", "either"}},
+        Spoiled{"no_cell", "cells_per_diameter = 20", "", {"numerics.cell", "missing"}},
+        Spoiled{"cell_does_not_fit",
+                "cells_per_diameter = 20",
+                "cell = 1.3e-4",
+                {"box.size", "whole number"}},
+        Spoiled{"mach",
+                "cells_per_diameter = 20",
+                "cells_per_diameter = 20\ntime_step = 1e-3",
+                {"numerics.time_step", "0.48", "compressible"}},
+        Spoiled{"tau_half", "kinematic_viscosity = 1e-5", "kinematic_viscosity = 1e-12", {"τ"}},
+        Spoiled{"few_substeps",
+                "timeout = 60.0",
+                "substeps = 1\ntimeout = 60.0",
+                {"coupling.substeps", "at least 12"}},
+        Spoiled{"no_end", "end_time = 1.0", "end_time = 0.0", {"run.end_time", "positive"}},
+        Spoiled{"bad_syntax", "[box]", "[box", {":5"}},
+        Spoiled{"not_a_pair", "size = [0.02, 0.06]", "size = [0.02]", {"box.size", "pair"}}),
+    [](const auto& info) { return info.param.name; });
+
+TEST(Scene, AStepTooLongForTheViscosityIsRefused) {
+  Scene scene = read_scene({BPLBM_SOURCE_DIR "/cases/settling_disc/scene.toml"});
+  scene.fluid.viscosity = 1e-3;
+  scene.numerics.time_step = 1e-4;  // tau = 0.5 + 3 · 1e-3 · 1e-4 / 1.25e-4² = 19.7
+  try {
+    make_plan(scene);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("τ = 19.7"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Scene, MissingFileIsNamed) {
+  try {
+    read_scene({"nowhere/scene.toml"});
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("nowhere/scene.toml: no such file"), std::string::npos);
+  }
+}
+
+TEST(Scene, AParticleWiderThanHalfAPeriodicBoxIsRefused) {
+  const test::TemporaryFolder folder;
+  std::string text =
+      test::replaced(test::good_scene(), "sides_x = \"wall\"", "sides_x = \"periodic\"");
+  text = test::replaced(text, "size = [0.02, 0.06]", "size = [0.004, 0.06]");
+  text = test::replaced(text, "[[0.01, 0.04]]", "[[0.002, 0.04]]");
+  const Scene scene = read_scene({folder.write("scene.toml", text)});
+  EXPECT_THROW(make_plan(scene), InputError);
+}
+
+TEST(Scene, OverlaysReplaceKeyByKeyAndKeepTheirFileInMessages) {
+  const test::TemporaryFolder folder;
+  const auto base = folder.write("scene.toml", test::good_scene());
+  const auto over = folder.write("over.toml", "[numerics]\ncells_per_diameter = 10\n");
+  const Scene scene = read_scene({base, over});
+  EXPECT_EQ(scene.numerics.cells_per_diameter, 10.0);
+  EXPECT_EQ(scene.numerics.collision, "trt");
+  const auto bad = folder.write("bad.toml", "[fluid]\ndensity = -1\n");
+  try {
+    read_scene({base, bad});
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("bad.toml:2"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
