@@ -31,7 +31,8 @@ void overlay(toml::table& base, toml::table&& over) {
     if (below && below->is_table() && node.is_table())
       overlay(*below->as_table(), std::move(*node.as_table()));
     else
-      node.visit([&](auto& value) { base.insert_or_assign(key, std::move(value)); });
+      node.visit(
+          [&base, &name = key](auto& value) { base.insert_or_assign(name, std::move(value)); });
   }
 }
 

@@ -160,7 +160,8 @@ TEST(Numerics, ANaNInTheLoadsIsNamedByTheSolid) {
   const test::TemporaryFolder folder;
   folder.write(
       "in.liggghts",
-      "dimension 2\nunits si\natom_style granular\natom_modify map array sort 0 0\nboundary p p p\nnewton "
+      "dimension 2\nunits si\natom_style granular\natom_modify map array sort 0 0\nboundary p p "
+      "p\nnewton "
       "off\n"
       "communicate single vel yes\nregion box block 0 1 0 1 -0.5 0.5 units box\ncreate_box 1 box\n"
       "neighbor 0.02 bin\ncreate_atoms 1 single 0.5 0.5 0 units box\nset type 1 diameter 0.1 "
