@@ -78,6 +78,13 @@ class Reader {
       throw BadMessage(fmt::format("expected a {} message, got {}", name(expected), name(kind)));
   }
 
+  Reader& operator>>(bool& value) {  // a byte other than 0 and 1 is no bool
+    std::uint8_t byte = 0;
+    *this >> byte;
+    if (byte > 1) throw BadMessage("a flag is neither 0 nor 1");
+    value = byte == 1;
+    return *this;
+  }
   template <class T>
   Reader& operator>>(T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -102,9 +109,8 @@ class Reader {
   }
   template <class T>
   Reader& operator>>(std::optional<T>& value) {
-    std::uint8_t present = 0;
+    bool present = false;
     *this >> present;
-    if (present > 1) throw BadMessage("an optional field is neither present nor absent");
     value.reset();
     if (present) *this >> value.emplace();
     return *this;
@@ -137,19 +143,53 @@ class Reader {
   std::size_t at_ = sizeof(FrameHead);
 };
 
-/// The fields of a hello, in order, once for both directions.
-template <class Stream, class Message>
-void hello_fields(Stream& s, Message& h) {
-  auto io = [&s](auto&... field) {
-    if constexpr (std::is_same_v<Stream, Writer>)
-      (s << ... << field);
-    else
-      (s >> ... >> field);
-  };
-  io(h.version, h.role, h.program, h.program_version, h.dimension, h.box_lo, h.box_hi, h.periodic,
-     h.depth, h.units, h.gravity, h.buoyancy, h.step, h.fluid_steps, h.solid_steps,
-     h.first_interval, h.schedule, h.features, h.particles, h.radius, h.density, h.subdomain_lo,
-     h.subdomain_hi, h.reach, h.variables);
+/// The fields of a message in their order, once for both directions: `io(fields…)` writes or reads.
+template <class Io, class M>
+void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Hello> {
+  io(m.version, m.role, m.program, m.program_version, m.dimension, m.box_lo, m.box_hi, m.periodic,
+     m.depth, m.units, m.gravity, m.buoyancy, m.step, m.fluid_steps, m.solid_steps,
+     m.first_interval, m.schedule, m.features, m.particles, m.radius, m.density, m.subdomain_lo,
+     m.subdomain_hi, m.reach, m.variables);
+}
+template <class Io, class M>
+void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Answer> {
+  io(m.accept, m.reasons);
+}
+template <class Io, class M>
+void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, StateBatch> {
+  io(m.head, m.states, m.shapes);
+}
+template <class Io, class M>
+void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, LoadBatch> {
+  io(m.head, m.loads);
+}
+template <class Io, class M>
+void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Goodbye> {
+  io(m.reason);
+}
+template <class Io, class M>
+void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Fault> {
+  io(m.exit_code, m.reason);
+}
+template <class Io, class M>
+void fields(Io&& io, M&) requires std::is_same_v<std::remove_const_t<M>, Farewell> {
+  io();
+}
+
+template <class Message>
+Bytes write(Kind kind, const Message& message) {
+  Writer writer(kind);
+  fields([&writer](const auto&... field) { static_cast<void>((writer << ... << field)); }, message);
+  return writer.frame();
+}
+
+template <class Message>
+Message read(Kind kind, const Bytes& frame) {
+  Reader reader(frame, kind);
+  Message message;
+  fields([&reader](auto&... field) { static_cast<void>((reader >> ... >> field)); }, message);
+  reader.expect_end();
+  return message;
 }
 
 }  // namespace
@@ -190,92 +230,62 @@ Kind kind_of(const Bytes& frame) {
   return head.kind;
 }
 
-Bytes encode(const Hello& hello) {
-  Writer w(Kind::Hello);
-  hello_fields(w, hello);
-  return w.frame();
+Bytes encode(const Hello& m) {
+  return write(Kind::Hello, m);
 }
-Bytes encode(const Answer& a) {
-  return (Writer(Kind::Answer) << std::uint8_t{a.accept} << a.reasons).frame();
+Bytes encode(const Answer& m) {
+  return write(Kind::Answer, m);
 }
-Bytes encode(const StateBatch& b) {
-  return (Writer(Kind::States) << b.head << b.states << b.shapes).frame();
+Bytes encode(const StateBatch& m) {
+  return write(Kind::States, m);
 }
-Bytes encode(const LoadBatch& b) {
-  return (Writer(Kind::Loads) << b.head << b.loads).frame();
+Bytes encode(const LoadBatch& m) {
+  return write(Kind::Loads, m);
 }
-Bytes encode(const Goodbye& g) {
-  return (Writer(Kind::Goodbye) << g.reason).frame();
+Bytes encode(const Goodbye& m) {
+  return write(Kind::Goodbye, m);
 }
-Bytes encode(const Fault& f) {
-  return (Writer(Kind::Fault) << f.exit_code << f.reason).frame();
+Bytes encode(const Fault& m) {
+  return write(Kind::Fault, m);
 }
-Bytes encode(const Farewell&) {
-  return Writer(Kind::Farewell).frame();
+Bytes encode(const Farewell& m) {
+  return write(Kind::Farewell, m);
 }
 
 template <>
 Hello decode(const Bytes& frame) {
-  Reader r(frame, Kind::Hello);
-  Hello hello;
-  r >> hello.version;  // another version may have other fields: say so before reading them
-  if (hello.version != kProtocolVersion)
+  std::uint32_t version = 0;  // another version may have other fields: look before reading them
+  Reader(frame, Kind::Hello) >> version;
+  if (version != kProtocolVersion)
     throw BadMessage(fmt::format("protocol version: partner speaks {}, this program {}; rebuild "
                                  "both programs from the same release",
-                                 hello.version, kProtocolVersion),
+                                 version, kProtocolVersion),
                      kBadInput);
-  Reader from_start(frame, Kind::Hello);
-  hello_fields(from_start, hello);
-  from_start.expect_end();
-  return hello;
+  return read<Hello>(Kind::Hello, frame);
 }
-
 template <>
 Answer decode(const Bytes& frame) {
-  Answer a;
-  std::uint8_t accept = 0;
-  Reader r(frame, Kind::Answer);
-  r >> accept >> a.reasons;
-  r.expect_end();
-  a.accept = accept != 0;
-  return a;
+  return read<Answer>(Kind::Answer, frame);
 }
 template <>
 StateBatch decode(const Bytes& frame) {
-  StateBatch b;
-  Reader r(frame, Kind::States);
-  r >> b.head >> b.states >> b.shapes;
-  r.expect_end();
-  return b;
+  return read<StateBatch>(Kind::States, frame);
 }
 template <>
 LoadBatch decode(const Bytes& frame) {
-  LoadBatch b;
-  Reader r(frame, Kind::Loads);
-  r >> b.head >> b.loads;
-  r.expect_end();
-  return b;
+  return read<LoadBatch>(Kind::Loads, frame);
 }
 template <>
 Goodbye decode(const Bytes& frame) {
-  Goodbye g;
-  Reader r(frame, Kind::Goodbye);
-  r >> g.reason;
-  r.expect_end();
-  return g;
+  return read<Goodbye>(Kind::Goodbye, frame);
 }
 template <>
 Fault decode(const Bytes& frame) {
-  Fault f;
-  Reader r(frame, Kind::Fault);
-  r >> f.exit_code >> f.reason;
-  r.expect_end();
-  return f;
+  return read<Fault>(Kind::Fault, frame);
 }
 template <>
 Farewell decode(const Bytes& frame) {
-  Reader(frame, Kind::Farewell).expect_end();
-  return {};
+  return read<Farewell>(Kind::Farewell, frame);
 }
 
 }  // namespace protocol

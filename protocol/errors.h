@@ -42,6 +42,12 @@ class PeerFault : public ProtocolError {
   explicit PeerFault(const Fault& fault) : ProtocolError(fault.reason, fault.exit_code) {}
 };
 
+/// The partner said goodbye where the job cannot do without it.
+class PeerLeft : public ProtocolError {
+ public:
+  using ProtocolError::ProtocolError;
+};
+
 /// The two hellos contradict each other.
 class Refusal : public ProtocolError {
  public:

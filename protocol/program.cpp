@@ -40,7 +40,8 @@ int exit_code_of(const std::exception& error) {
 int leave_after(const std::exception& error, const std::string& program, Channel* channel) {
   const int code = exit_code_of(error);
   const auto* from_peer = dynamic_cast<const PeerFault*>(&error);
-  const bool refusal = dynamic_cast<const Refusal*>(&error) != nullptr;
+  const bool in_order = dynamic_cast<const Refusal*>(&error) != nullptr ||
+                        dynamic_cast<const PeerLeft*>(&error) != nullptr;
   if (!channel || channel->local_rank() == 0) {
     std::fflush(stdout);
     if (from_peer)
@@ -50,7 +51,7 @@ int leave_after(const std::exception& error, const std::string& program, Channel
       fmt::print(stderr, "{} | error | {}\n", program, error.what());
     std::fflush(stderr);
   }
-  if (refusal) return code;
+  if (in_order) return code;
   if (caught) abort_job(code);  // mpirun is ending the job: nobody is left to talk to
   if (channel && from_peer) {
     channel->say_farewell();

@@ -13,8 +13,8 @@ namespace protocol {
 int exit_code_of(const std::exception& error);
 
 /// Ends a failing program: prints `<program> | error | <text>`; unless the partner already knows
-/// (PeerFault, Refusal), tells it and waits until it has cleaned up; then ends the whole MPI job.
-/// A Refusal returns the exit code instead, because both programs then leave in good order.
+/// (PeerFault), tells it and waits until it has cleaned up; then ends the whole MPI job.
+/// Refusal and PeerLeft return the exit code instead: both programs then leave in good order.
 /// @param channel  null before there is a partner
 int leave_after(const std::exception& error, const std::string& program, Channel* channel);
 

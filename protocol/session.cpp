@@ -82,8 +82,8 @@ const Hello& FluidSession::agree() {
   for (int r = 0; r < channel_.remote_size(); ++r) {
     const Bytes frame = channel_.receive(r, {timeout_, "its hello (end of its script's set-up)"});
     if (kind_of(frame) == Kind::Goodbye)
-      throw ProtocolError(fmt::format("{} left before the coupling began: {}",
-                                      channel_.remote_name(), decode<Goodbye>(frame).reason));
+      throw PeerLeft(fmt::format("{} left before the coupling began: {}", channel_.remote_name(),
+                                 decode<Goodbye>(frame).reason));
     const Hello hello = decode<Hello>(frame);
     if (r == 0) partner_ = hello;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A program that plays one side of a coupled job by a script that a test needs:
+/// A program that plays one side of a coupled job by a script that a test needs, and writes what it
+/// receives to peer.txt (the terminal mixes the lines of two programs):
 ///   scripted_peer fluid impulse N         load of interval k is (k+1) times a constant; N
 ///   intervals scripted_peer fluid nan               answers a load that is not finite
 ///   scripted_peer fluid silent            says hello and nothing more
@@ -24,6 +25,7 @@ namespace {
 using namespace protocol;
 
 constexpr double kTimeout = 30.0;
+std::FILE* received = nullptr;
 
 /// A 2D box of 1 × 1 m for tests of the fix: ten solid steps of 1 ms an interval.
 Hello box_hello() {
@@ -48,12 +50,12 @@ void fluid(Channel& channel, const std::string& script, int intervals) {
   for (int k = 0;; ++k) {
     const Arrival& arrival = session.receive();
     if (arrival.goodbye) {
-      fmt::print("goodbye: {}\n", *arrival.goodbye);
+      fmt::print(received, "goodbye: {}\n", *arrival.goodbye);
       return;
     }
     for (const Particle& p : arrival.particles)
-      fmt::print("state {} {} {:.17g} {:.17g} {:.17g} {:.17g}\n", k, p.state.id, p.state.x[0],
-                 p.state.v[0], p.state.v[1], p.state.omega[2]);
+      fmt::print(received, "state {} {} {:.17g} {:.17g} {:.17g} {:.17g}\n", k, p.state.id,
+                 p.state.x[0], p.state.v[0], p.state.v[1], p.state.omega[2]);
     if (arrival.head.flags & kLast) return;
     std::vector<Load> loads;
     for (const Particle& p : arrival.particles)
@@ -99,7 +101,8 @@ void solid(Channel& channel, const std::string& script) {
     for (const State& s : states) shapes.push_back({s.id, r, mass, 0.5 * mass * r * r, 1});
     const auto reply = session.exchange({k, 0.0, stop ? kLast : kContinue}, states, shapes);
     if (stop) return;
-    for (const Load& l : reply.loads) fmt::print("load {} {} {:.9g}\n", k, l.id, l.force[1]);
+    for (const Load& l : reply.loads)
+      fmt::print(received, "load {} {} {:.9g}\n", k, l.id, l.force[1]);
     if (script == "die") kill(getpid(), SIGKILL);
     stop = reply.flags & kStop;
   }
@@ -112,6 +115,8 @@ int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   catch_signals();
   const Role role = side == "fluid" ? Role::Fluid : Role::Solid;
+  received = std::fopen("peer.txt", "w");
+  std::setvbuf(received, nullptr, _IOLBF, 0);
   std::unique_ptr<Channel> channel;
   World world;
   int code = 0;

@@ -1,0 +1,83 @@
+"""tools/launch.py judges results and maps exit codes; no program is started."""
+
+import contextlib
+import io
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tools"))
+
+import launch  # noqa: E402
+from pictures import result  # noqa: E402
+
+
+class Result(unittest.TestCase):
+    def test_inside_and_outside(self):
+        self.assertTrue(result("a", 1.02, "1", 1.0, "here", 0.03)["pass"])
+        self.assertFalse(result("a", 1.04, "1", 1.0, "here", 0.03)["pass"])
+        self.assertFalse(result("a", float("nan"), "1", 1.0, "here", 0.03)["pass"])
+
+    def test_scale_replaces_a_reference_of_zero(self):
+        r = result("a", 0.5, "m/s", 0.0, "here", 0.1, scale=10.0)
+        self.assertAlmostEqual(r["error"], 0.05)
+        self.assertTrue(r["pass"])
+
+
+class Launch(unittest.TestCase):
+    def run_main(self, *arguments, job_code=0, value=1.0):
+        """Exit code and output of tools/run with a job that is only pretended."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+
+            def job(args, place):
+                (out / "summary.json").write_text(json.dumps(
+                    {"results": [result("number", value, "1", 1.0, "test", 0.03)]}))
+                return job_code
+
+            text = io.StringIO()
+            with mock.patch.object(launch, "run_job", job), mock.patch.object(launch, "draw"), \
+                    mock.patch.object(sys, "argv", ["run", *arguments, "--out", folder]), \
+                    contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
+                try:
+                    return launch.main(), text.getvalue()
+                except SystemExit as end:
+                    return end.code, text.getvalue()
+
+    def test_a_result_inside_its_tolerance_is_0(self):
+        self.assertEqual(self.run_main("settling_disc", "--no-study")[0], 0)
+
+    def test_a_result_outside_its_tolerance_is_4(self):
+        code, text = self.run_main("settling_disc", "--no-study", value=1.2)
+        self.assertEqual(code, 4)
+        self.assertIn("MISS", text)
+
+    def test_the_codes_of_the_programs_pass_through(self):
+        for job_code in (1, 2, 3):
+            self.assertEqual(self.run_main("settling_disc", "--no-study", job_code=job_code)[0], job_code)
+
+    def test_unknown_names_are_listed(self):
+        for words, expected in ((["nothing"], "settling_disc"),
+                                (["settling_disc", "--set", "nothing"], "resolved, fine"),
+                                (["settling_disc", "--variant", "nothing"], "d10, no_inner_inertia")):
+            code, text = self.run_main(*words)
+            self.assertEqual(code, 2)
+            self.assertIn(expected, text)
+
+    def test_the_command_names_both_programs_by_absolute_path(self):
+        args = mock.Mock(scene="settling_disc", set="fine", variant="d10", threads=2, until=None,
+                         record=None, fluid_ranks=1, solid_ranks=3)
+        line = launch.command(args, pathlib.Path("/somewhere"))
+        split = line.index(":")
+        self.assertTrue(line[line.index("1") + 1].endswith("/bin/lbm"))
+        self.assertTrue(line[split + 3].startswith("/") and line[split + 3].endswith("/bin/liggghts"))
+        self.assertEqual(line[split + 2], "3")
+        self.assertTrue(any(word.endswith("fine.toml") for word in line))
+
+
+if __name__ == "__main__":
+    unittest.main()
