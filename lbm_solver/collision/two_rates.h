@@ -1,50 +1,80 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "lbm_solver/collision/equilibrium.h"
+#include "lbm_solver/collision/forcing.h"
 
 namespace lbm {
 
-/// Relaxation rates of the even and odd halves of the populations.
-///
-/// BGK has equal rates 1/tau. TRT [Ginzburg 2008] takes 1/tau for the even half, which sets the
-/// viscosity nu = (tau - 1/2)/3, and chooses the odd one so that Λ = (τ⁺ - ½)(τ⁻ - ½) is fixed:
-/// with Λ = 3/16 a half-way wall lies exactly half-way at every viscosity.
-struct Rates {
-  double even, odd;
+/// How the relaxation time of the odd half follows from that of the even half.
 
-  static constexpr Rates bgk(double tau) { return {1.0 / tau, 1.0 / tau}; }
-  static constexpr Rates trt(double tau, double magic) {
-    return {1.0 / tau, 1.0 / (magic / (tau - 0.5) + 0.5)};
+/// BGK: both are equal.
+struct EqualRates {
+  explicit EqualRates(const CollisionParameters&) {}
+  template <class V>
+  [[gnu::always_inline]] V odd_tau(const V& tau) const {
+    return tau;
   }
 };
 
-/// Two-relaxation-time collision of a cell of pure fluid:
-///   f± <- f± + ω± (f±^eq - f±)
+/// TRT [Ginzburg 2008]: Λ = (τ⁺ - ½)(τ⁻ - ½) is kept. With Λ = 3/16 a half-way wall lies exactly
+/// half-way at every viscosity.
+struct MagicRate {
+  explicit MagicRate(const CollisionParameters& p) : magic(p.magic) {}
+  template <class V>
+  [[gnu::always_inline]] V odd_tau(const V& tau) const {
+    return V(magic) / (tau - V(0.5)) + V(0.5);
+  }
+  double magic;
+};
+
+/// Relaxes the even and odd halves of the populations:
+///   f± <- f± + ω± (f±^eq - f±) + (1 - ω±/2) S±,   ω⁺ = 1/τ, ω⁻ by the odd rule
 /// @param f  populations [q] that arrived, as deviations from rest; overwritten
+template <class OddRule, class Turbulence, class Force>
 class TwoRates {
  public:
-  explicit TwoRates(const Rates& rates) : rates_(rates) {}
-  const Rates& rates() const { return rates_; }
+  explicit TwoRates(const CollisionParameters& p)
+      : odd_rule_(p),
+        turbulence_(p),
+        force_(p),
+        even_rate_(1.0 / p.tau),
+        odd_rate_(1.0 / odd_rule_.odd_tau(p.tau)) {}
 
   template <class V>
   [[gnu::always_inline]] void operator()(V (&f)[D2Q9::Q]) const {
     const Moments<V> m = moments(f);
-    const Equilibrium<V> eq(m.drho, m.ux, m.uy);
-    const V even_rate(rates_.even), odd_rate(rates_.odd);
+    const V inverse = V(1.0) / (m.drho + V(1.0));
+    const V ux = force_.momentum_x(m.jx) * inverse, uy = force_.momentum_y(m.jy) * inverse;
+    V even_rate(even_rate_), odd_rate(odd_rate_);
+    if constexpr (Turbulence::on) {
+      const V rho = m.drho + V(1.0);
+      const V tau = turbulence_.tau(non_equilibrium(f, m.drho, ux, uy, force_), rho);
+      even_rate = V(1.0) / tau;
+      odd_rate = V(1.0) / odd_rule_.odd_tau(tau);
+    }
+    const Equilibrium<V> eq(m.drho, ux, uy);
     f[0] += even_rate * (eq.rest() - f[0]);
+    if constexpr (Force::on) f[0] += (V(1.0) - V(0.5) * even_rate) * force_.rest(ux, uy);
     unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
       constexpr int i = 2 * p + 1;
       const auto e = eq.template pair<i>();
       const V even = V(0.5) * (f[i] + f[i + 1]), odd = V(0.5) * (f[i] - f[i + 1]);
-      const V even_gain = even_rate * (e.even - even), odd_gain = odd_rate * (e.odd - odd);
+      V even_gain = even_rate * (e.even - even), odd_gain = odd_rate * (e.odd - odd);
+      if constexpr (Force::on) {
+        const auto s = force_.template pair<i>(ux, uy);
+        even_gain += (V(1.0) - V(0.5) * even_rate) * s.even;
+        odd_gain += (V(1.0) - V(0.5) * odd_rate) * s.odd;
+      }
       f[i] += even_gain + odd_gain;
       f[i + 1] += even_gain - odd_gain;
     });
   }
 
  private:
-  Rates rates_;
+  OddRule odd_rule_;
+  Turbulence turbulence_;
+  Force force_;
+  double even_rate_, odd_rate_;
 };
 
 }  // namespace lbm

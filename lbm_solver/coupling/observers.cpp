@@ -146,7 +146,7 @@ Summary Observers::summary(double wall_seconds) const {
   s.parameters = {{"cell", plan_.units.dx},
                   {"time_step", plan_.units.dt},
                   {"interval", plan_.interval()},
-                  {"tau", plan_.kernel.tau},
+                  {"tau", plan_.kernel.parameters.tau},
                   {"density", scene_.fluid.density},
                   {"kinematic_viscosity", scene_.fluid.viscosity},
                   {"gravity_x", scene_.fluid.gravity.x()},

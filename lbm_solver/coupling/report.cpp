@@ -57,7 +57,7 @@ std::string describe(const Scene& s, const Plan& p) {
   line("fluid step", fmt::format("Δt = {:.6g} s, C = Δx/Δt = {:.6g} m/s [{}]", p.units.dt,
                                  p.lattice_speed, p.step_limit));
   line("fluid", fmt::format("ρ {:.6g} kg/m³, ν {:.6g} m²/s, τ = {:.6g}", s.fluid.density,
-                            s.fluid.viscosity, p.kernel.tau));
+                            s.fluid.viscosity, p.kernel.parameters.tau));
   line("numbers",
        fmt::format("Re {:.4g}, Re_h {:.3g}, Ma = u/c_s {:.3g}, u/C {:.3g} at u = {:.4g} m/s",
                    p.reynolds, p.reynolds_cell, p.u_over_c * std::numbers::sqrt3, p.u_over_c,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "lbm_solver/collision/two_rates.h"
+#include "lbm_solver/collision/equilibrium.h"
 
 namespace lbm {
 
@@ -25,9 +25,9 @@ struct NobleTorczynski {
   [[gnu::always_inline]] static V rest(const V&, const V& eq, const V& solid, const Layer<V>&) {
     return solid - eq;
   }
-  template <class V, class Halves>
-  [[gnu::always_inline]] static Halves pair(const Halves& f, const Halves& eq, const Halves& solid,
-                                            const Layer<V>&) {
+  template <class V>
+  [[gnu::always_inline]] static Halves<V> pair(const Halves<V>& f, const Halves<V>& eq,
+                                               const Halves<V>& solid, const Layer<V>&) {
     return {solid.even - eq.even, solid.odd + eq.odd - V(2.0) * f.odd};
   }
 };
@@ -44,9 +44,9 @@ struct Holdych {
   [[gnu::always_inline]] static V rest(const V&, const V&, const V&, const Layer<V>&) {
     return V(0.0);
   }
-  template <class V, class Halves>
-  [[gnu::always_inline]] static Halves pair(const Halves& f, const Halves&, const Halves& solid,
-                                            const Layer<V>&) {
+  template <class V>
+  [[gnu::always_inline]] static Halves<V> pair(const Halves<V>& f, const Halves<V>&,
+                                               const Halves<V>& solid, const Layer<V>&) {
     return {V(0.0), V(2.0) * (solid.odd - f.odd)};
   }
 };
@@ -68,9 +68,9 @@ struct LayeredHoldych {
                                        const Layer<V>& layer) {
     return (V(1.0) - layer.surface) * (solid - f + layer.memory * (f - eq));
   }
-  template <class V, class Halves>
-  [[gnu::always_inline]] static Halves pair(const Halves& f, const Halves& eq, const Halves& solid,
-                                            const Layer<V>& layer) {
+  template <class V>
+  [[gnu::always_inline]] static Halves<V> pair(const Halves<V>& f, const Halves<V>& eq,
+                                               const Halves<V>& solid, const Layer<V>& layer) {
     const V odd = solid.odd - f.odd;
     return {(V(1.0) - layer.surface) * (solid.even - f.even + layer.memory * (f.even - eq.even)),
             odd + layer.memory * (eq.odd - f.odd) + layer.surface * (solid.odd - eq.odd)};
@@ -79,49 +79,45 @@ struct LayeredHoldych {
 
 /// Immersed-moving-boundary collision of a covered cell:
 ///   f_i <- f_i + (1-B) Ω_i + B Ω_i^s
-/// with Ω of TwoRates. The force on the solid is the momentum that the cell loses to Ω^s,
-///   F = -B Σ c_i Ω_i^s = k B rho (u - u_s),
+/// with Ω of any collision operator. The force on the solid is the momentum that the cell loses to
+/// Ω^s,
+///   F = -B Σ c_i Ω_i^s = k B rho (u - u_s),   rho u = j without any body force,
 /// an identity that holds to round-off, so no sum over directions is needed.
 template <class Term>
 class CoveredCollision {
  public:
-  explicit CoveredCollision(const Rates& rates) : rates_(rates) {}
-
   template <class V>
   struct Force {
     V x, y;  ///< on the solid, lattice units
   };
 
   /// @param f        populations [q] that arrived; overwritten
+  /// @param collide  the operator of pure fluid
   /// @param weight   B [1], 0 … 1
   /// @param layer    where the cell lies in its solid
   /// @param us, vs   solid velocity at the cell centre, lattice units
-  template <class V>
-  [[gnu::always_inline]] Force<V> operator()(V (&f)[D2Q9::Q], V weight, const Layer<V>& layer, V us,
-                                             V vs) const {
+  template <class V, class Collision>
+  [[gnu::always_inline]] static Force<V> apply(V (&f)[D2Q9::Q], const Collision& collide, V weight,
+                                               const Layer<V>& layer, V us, V vs) {
+    V fluid[D2Q9::Q];
+    unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
+    collide(fluid);
     const Moments<V> m = moments(f);
-    const Equilibrium<V> eq(m.drho, m.ux, m.uy), solid(m.drho, us, vs);
-    const V even_rate = (V(1.0) - weight) * V(rates_.even);
-    const V odd_rate = (V(1.0) - weight) * V(rates_.odd);
-    using Halves = typename Equilibrium<V>::Halves;
-    f[0] +=
-        even_rate * (eq.rest() - f[0]) + weight * Term::rest(f[0], eq.rest(), solid.rest(), layer);
+    const V rho = m.drho + V(1.0), inverse = V(1.0) / rho;
+    const V ux = m.jx * inverse, uy = m.jy * inverse;
+    const Equilibrium<V> eq(m.drho, ux, uy), solid(m.drho, us, vs);
+    const V rest = Term::rest(f[0], eq.rest(), solid.rest(), layer);
+    f[0] = fluid[0] + weight * (f[0] - fluid[0] + rest);
     unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
       constexpr int i = 2 * p + 1;
-      const auto e = eq.template pair<i>();
-      const Halves here{V(0.5) * (f[i] + f[i + 1]), V(0.5) * (f[i] - f[i + 1])};
-      const Halves s = Term::pair(here, e, solid.template pair<i>(), layer);
-      const V even_gain = even_rate * (e.even - here.even) + weight * s.even;
-      const V odd_gain = odd_rate * (e.odd - here.odd) + weight * s.odd;
-      f[i] += even_gain + odd_gain;
-      f[i + 1] += even_gain - odd_gain;
+      const Halves<V> here{V(0.5) * (f[i] + f[i + 1]), V(0.5) * (f[i] - f[i + 1])};
+      const Halves<V> s = Term::pair(here, eq.template pair<i>(), solid.template pair<i>(), layer);
+      f[i] = fluid[i] + weight * (f[i] - fluid[i] + s.even + s.odd);
+      f[i + 1] = fluid[i + 1] + weight * (f[i + 1] - fluid[i + 1] + s.even - s.odd);
     });
-    const V strength = Term::momentum_factor(layer) * weight * (m.drho + V(1.0));
-    return {strength * (m.ux - us), strength * (m.uy - vs)};
+    const V strength = Term::momentum_factor(layer) * weight * rho;
+    return {strength * (ux - us), strength * (uy - vs)};
   }
-
- private:
-  Rates rates_;
 };
 
 }  // namespace lbm

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lbm_solver/base/contracts.h"
+#include "lbm_solver/collision/equilibrium.h"
 
 namespace lbm {
 
@@ -12,11 +13,15 @@ Fluid::Fluid(const Domain& domain, const KernelChoice& choice)
       f_(domain.nx, domain.ny),
       stream_(domain.x, domain.y),
       kernel_(make_kernel(choice)),
-      cover_(choice.solid_term == "none" ? nullptr
-                                         : std::make_unique<CoverMap>(domain, choice.tau)) {}
+      half_force_(choice.force ? 0.5 * choice.parameters.force_x : 0.0,
+                  choice.force ? 0.5 * choice.parameters.force_y : 0.0),
+      cover_(choice.solid_term == "none"
+                 ? nullptr
+                 : std::make_unique<CoverMap>(domain, choice.parameters.tau)) {}
 
 void Fluid::set_equilibrium(int x, int y, double rho, const Vec2& u) {
-  const Equilibrium<double> eq(rho - 1.0, u.x(), u.y());
+  const Vec2 before = u - half_force_ / rho;  // the step adds the other half of a body force
+  const Equilibrium<double> eq(rho - 1.0, before.x(), before.y());
   arriving(0, x, y) = eq.rest();
   unroll<D2Q9::pairs>([&](auto p) {
     constexpr int i = 2 * p + 1;
@@ -40,7 +45,7 @@ Fluid::Cell Fluid::cell(int x, int y) const {
   double f[D2Q9::Q];
   for (int q = 0; q < D2Q9::Q; ++q) f[q] = arriving(q, x, y);
   const Moments<double> m = moments(f);
-  return {m.drho + 1.0, {m.ux, m.uy}};
+  return {m.drho + 1.0, (Vec2(m.jx, m.jy) + half_force_) / (m.drho + 1.0)};
 }
 
 void Fluid::row(int y, std::span<double> rho, std::span<double> ux, std::span<double> uy) {
@@ -50,8 +55,9 @@ void Fluid::row(int y, std::span<double> rho, std::span<double> ux, std::span<do
     unroll<D2Q9::Q>([&](auto q) { f[q] = load<V>(row.in[q] + x); });
     const Moments<V> m = moments(f);
     store(&rho[x], m.drho + V(1.0));
-    store(&ux[x], m.ux);
-    store(&uy[x], m.uy);
+    const V inverse = V(1.0) / (m.drho + V(1.0));
+    store(&ux[x], (m.jx + V(half_force_.x())) * inverse);
+    store(&uy[x], (m.jy + V(half_force_.y())) * inverse);
   };
   int x = 0;
   for (; x + kPackWidth <= domain_.nx; x += kPackWidth) cells.operator()<Pack>(x);

@@ -62,6 +62,7 @@ class Fluid {
   Populations f_;
   EsotericPull stream_;
   std::unique_ptr<Kernel> kernel_;
+  Vec2 half_force_;  // half the body force: rho u = Σ c f + F/2
   std::unique_ptr<CoverMap> cover_;
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lbm_solver/collision/two_rates.h"
+#include "lbm_solver/collision/parameters.h"
 #include "lbm_solver/field/esoteric_pull.h"
 #include "lbm_solver/immersed/cover_map.h"
 
@@ -21,10 +21,11 @@ class Kernel {
 
 /// What a scene asks of the kernel; a row of the kernel table.
 struct KernelChoice {
-  std::string collision;   ///< "bgk" or "trt"
-  std::string solid_term;  ///< "none" or one of known_solid_terms()
-  double tau = 1.0;
-  double magic = 3.0 / 16.0;  ///< Λ of TRT
+  std::string collision = "trt";    ///< one of known_collisions()
+  std::string turbulence = "none";  ///< "none" or "smagorinsky"
+  bool force = false;               ///< uniform body force
+  std::string solid_term = "none";  ///< "none" or one of known_solid_terms()
+  CollisionParameters parameters;
 };
 
 /// @throws std::invalid_argument naming the rows that exist

@@ -1,62 +1,46 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// The combinations that are compiled. To add one: write its policy, add a row here, add it to the
-/// reference test in tests/unit/lbm_solver/kernel_test.cpp.
 #include <fmt/format.h>
 
 #include <stdexcept>
 
-#include "lbm_solver/solver/row_kernel.h"
+#include "lbm_solver/solver/kernel_rows.h"
 
 namespace lbm {
 namespace {
 
-Rates bgk(const KernelChoice& c) {
-  return Rates::bgk(c.tau);
-}
-Rates trt(const KernelChoice& c) {
-  return Rates::trt(c.tau, c.magic);
+const KernelRows& table() {
+  static const KernelRows all = [] {
+    KernelRows rows;
+    for (const auto& part :
+         {bgk_rows(), trt_rows(), central_moment_rows(), recursive_regularised_rows()})
+      rows.insert(rows.end(), part.begin(), part.end());
+    return rows;
+  }();
+  return all;
 }
 
-template <class Term>
-std::unique_ptr<Kernel> two_rates(const Rates& rates) {
-  return std::make_unique<RowKernel<TwoRates, Term>>(rates);
+std::string text(const std::string& collision, const std::string& turbulence, bool force,
+                 const std::string& solid_term) {
+  return fmt::format("{} + {} + {} + {}", collision, turbulence == "none" ? "laminar" : turbulence,
+                     force ? "force" : "no force", solid_term == "none" ? "no solids" : solid_term);
 }
-
-struct TableRow {
-  const char* collision;
-  const char* solid_term;
-  Rates (*rates)(const KernelChoice&);
-  std::unique_ptr<Kernel> (*make)(const Rates&);
-};
-
-// BGK is TRT with equal rates: the same compiled kernel.
-constexpr TableRow kTable[] = {
-    {"bgk", "none", bgk, two_rates<NoSolid>},
-    {"bgk", "noble_torczynski", bgk, two_rates<NobleTorczynski>},
-    {"bgk", "holdych", bgk, two_rates<Holdych>},
-    {"bgk", "layered_holdych", bgk, two_rates<LayeredHoldych>},
-    {"trt", "none", trt, two_rates<NoSolid>},
-    {"trt", "noble_torczynski", trt, two_rates<NobleTorczynski>},
-    {"trt", "holdych", trt, two_rates<Holdych>},
-    {"trt", "layered_holdych", trt, two_rates<LayeredHoldych>},
-};
 
 }  // namespace
 
-std::unique_ptr<Kernel> make_kernel(const KernelChoice& choice) {
+std::unique_ptr<Kernel> make_kernel(const KernelChoice& c) {
   std::string known;
-  for (const TableRow& row : kTable) {
-    if (choice.collision == row.collision && choice.solid_term == row.solid_term)
-      return row.make(row.rates(choice));
-    known += fmt::format("\n  {} + {}", row.collision, row.solid_term);
+  for (const KernelTableRow& row : table()) {
+    if (c.collision == row.collision && c.turbulence == row.turbulence && c.force == row.force &&
+        c.solid_term == row.solid_term)
+      return row.make(c.parameters);
+    known += "\n  " + text(row.collision, row.turbulence, row.force, row.solid_term);
   }
-  throw std::invalid_argument(
-      fmt::format("no kernel for collision '{}' with solid term '{}'; known:{}", choice.collision,
-                  choice.solid_term, known));
+  throw std::invalid_argument(fmt::format(
+      "no kernel for {}; known:{}", text(c.collision, c.turbulence, c.force, c.solid_term), known));
 }
 
 std::vector<std::string> known_collisions() {
-  return {"bgk", "trt"};
+  return {"bgk", "trt", "central_moment", "recursive_regularised"};
 }
 std::vector<std::string> known_solid_terms() {
   return {"noble_torczynski", "holdych", "layered_holdych"};

@@ -105,7 +105,7 @@ void fit_to_end(const Scene& s, Plan& plan) {
 }
 
 void judge_step(const Scene& s, Plan& plan) {
-  const double tau = plan.kernel.tau;
+  const double tau = plan.kernel.parameters.tau;
   plan.u_over_c = s.fluid.velocity_scale / plan.lattice_speed;
   plan.reynolds_cell = s.fluid.velocity_scale * plan.units.dx / s.fluid.viscosity;
   if (plan.u_over_c > kStopSpeed)
@@ -176,9 +176,9 @@ Plan make_plan(const Scene& s) {
   choose_step(s, plan);
   fit_to_end(s, plan);
   plan.kernel.collision = s.numerics.collision;
-  plan.kernel.magic = s.numerics.magic;
+  plan.kernel.parameters.magic = s.numerics.magic;
   plan.kernel.solid_term = s.coupling ? s.coupling->solid_term : "none";
-  plan.kernel.tau = 0.5 + 3.0 * s.fluid.viscosity * plan.units.dt / (dx * dx);
+  plan.kernel.parameters.tau = 0.5 + 3.0 * s.fluid.viscosity * plan.units.dt / (dx * dx);
   judge_step(s, plan);
   if (s.coupling) choose_substeps(s, plan);
   return plan;

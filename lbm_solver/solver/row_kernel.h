@@ -21,7 +21,7 @@ class RowKernel final : public Kernel {
   using Covered = CoveredCollision<std::conditional_t<kSolid, Term, Holdych>>;
 
  public:
-  explicit RowKernel(const Rates& rates) : collide_(rates), collide_covered_(rates) {}
+  explicit RowKernel(const CollisionParameters& p) : collide_(p) {}
 
   void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover) const override {
 #pragma omp parallel
@@ -77,16 +77,15 @@ class RowKernel final : public Kernel {
     V f[D2Q9::Q];
     unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { f[q] = load<V>(row.in[q] + x); });
     const auto force =
-        collide_covered_(f, load<V>(&block.weight[lane]),
-                         Layer<V>{load<V>(&block.surface[lane]), load<V>(&block.memory[lane])},
-                         load<V>(&block.us[lane]), load<V>(&block.vs[lane]));
+        Covered::apply(f, collide_, load<V>(&block.weight[lane]),
+                       Layer<V>{load<V>(&block.surface[lane]), load<V>(&block.memory[lane])},
+                       load<V>(&block.us[lane]), load<V>(&block.vs[lane]));
     unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { store(row.out[q] + x, f[q]); });
     store(&block.fx[lane], force.x);
     store(&block.fy[lane], force.y);
   }
 
   Collision collide_;
-  Covered collide_covered_;
 };
 
 }  // namespace lbm

@@ -13,7 +13,7 @@ using namespace lbm;
 using std::numbers::pi;
 
 KernelChoice choice(const std::string& collision, double tau) {
-  return {collision, "none", tau, 3.0 / 16.0};
+  return {collision, "none", false, "none", {.tau = tau}};
 }
 
 double viscosity(double tau) {

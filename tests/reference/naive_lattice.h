@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lbm_solver/immersed/footprint.h"
+#include "lbm_solver/solver/kernel.h"
 
 namespace test {
 
@@ -26,9 +26,7 @@ class NaiveLattice {
  public:
   using Cell = std::array<double, 9>;
 
-  /// @param term  "none", "noble_torczynski", "holdych" or "layered_holdych"
-  NaiveLattice(const Domain& domain, const std::string& collision, double tau, double magic,
-               const std::string& term);
+  NaiveLattice(const Domain& domain, const lbm::KernelChoice& choice);
 
   Cell& cell(int x, int y) { return f_[y * domain_.nx + x]; }
   NaiveCover& cover(int x, int y) { return cover_[y * domain_.nx + x]; }
@@ -40,12 +38,13 @@ class NaiveLattice {
 
  private:
   Cell collided(int x, int y);
+  /// Post-collision populations of pure fluid.
+  Cell fluid(const Cell& f) const;
   Cell solid_term(const Cell& f, const Cell& eq_fluid, double rho, const NaiveCover& c) const;
   void stream(int x, int y, const Cell& f, std::vector<Cell>& next) const;
 
   Domain domain_;
-  std::string collision_, term_;
-  double tau_, magic_;
+  lbm::KernelChoice choice_;
   std::vector<Cell> f_;
   std::vector<NaiveCover> cover_;
   std::vector<Vec2> force_;

@@ -22,7 +22,7 @@ TEST(Plan, ChoosesTheStepByMach) {
   EXPECT_EQ(p.domain.ny, 480);
   EXPECT_NEAR(p.lattice_speed, 10 * 0.06, 1e-3);
   EXPECT_NE(p.step_limit.find("Mach"), std::string::npos);
-  EXPECT_NEAR(p.kernel.tau, 0.5 + 3.0 * 1e-5 * p.units.dt / (1.25e-4 * 1.25e-4), 1e-12);
+  EXPECT_NEAR(p.kernel.parameters.tau, 0.5 + 3.0 * 1e-5 * p.units.dt / (1.25e-4 * 1.25e-4), 1e-12);
   EXPECT_NEAR(p.interval() * static_cast<double>(p.intervals), 1.0, 1e-12);  // ends on time
   EXPECT_EQ(p.substeps, 12);
 }
@@ -32,8 +32,8 @@ TEST(Plan, ChoosesTheStepByRelaxationTimeWhereTheFluidIsViscous) {
   s.fluid.viscosity = 1e-3;
   const Plan p = make_plan(s);
   EXPECT_NE(p.step_limit.find("relaxation"), std::string::npos);
-  EXPECT_LE(p.kernel.tau, 1.5 + 1e-12);
-  EXPECT_GT(p.kernel.tau, 1.49);
+  EXPECT_LE(p.kernel.parameters.tau, 1.5 + 1e-12);
+  EXPECT_GT(p.kernel.parameters.tau, 1.49);
 }
 
 TEST(Plan, WarnsWhereForcesGetNoisyAndWhereCellsAreFew) {

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/collision/two_rates.h"
+#include "lbm_solver/solver/kernel_rows.h"
+
+namespace lbm {
+
+template <class Turbulence, class Force>
+using Bgk = TwoRates<EqualRates, Turbulence, Force>;
+
+KernelRows bgk_rows() {
+  return rows_of<Bgk>("bgk");
+}
+
+}  // namespace lbm

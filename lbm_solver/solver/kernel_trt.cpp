@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/collision/two_rates.h"
+#include "lbm_solver/solver/kernel_rows.h"
+
+namespace lbm {
+
+template <class Turbulence, class Force>
+using Trt = TwoRates<MagicRate, Turbulence, Force>;
+
+KernelRows trt_rows() {
+  return rows_of<Trt>("trt");
+}
+
+}  // namespace lbm
