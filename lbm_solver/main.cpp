@@ -90,17 +90,19 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
     throw InputError("mpirun", fmt::format("{} ranks of lbm were started", ranks),
                      "start one lbm, with --threads for more cores, and liggghts after a colon");
   const Scene scene = read_scene(o.scene);
-  if (!scene.coupling)
-    throw InputError(scene.file, "has no [coupling], and nothing else drives a fluid yet",
-                     "add the tables [coupling] and [particles]");
   const Plan plan = make_plan(scene);
-  if (!channel)
+  if (scene.coupling && !channel)
     throw InputError(
         "mpirun", "no solid program was started beside lbm",
         "start: mpirun -np 1 lbm scene.toml : -np 1 liggghts -in in.liggghts, or tools/run");
+  if (!scene.coupling && channel)
+    throw InputError(scene.file, "has no [coupling], but a solid program was started",
+                     "start lbm alone, or add the tables [coupling] and [particles]");
   std::error_code failed;
   std::filesystem::create_directories(o.run.out, failed);
   if (failed) throw InputError(o.run.out, failed.message(), "choose another --out");
+  if (!o.record.empty() && !channel)
+    throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
   if (!o.record.empty())
     channel = protocol::make_recording_channel(
         std::move(channel),
@@ -108,7 +110,8 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   set_threads(o.threads);
   Log log(o.run.out, progress_style(o.progress));
   log.block(describe(scene, plan));
-  log.block(describe(run_coupled(scene, plan, *channel, o.run, log)));
+  log.block(describe(scene.coupling ? run_coupled(scene, plan, *channel, o.run, log)
+                                    : run_alone(scene, plan, o.run, log)));
 }
 
 }  // namespace

@@ -100,9 +100,11 @@ def command(args, out):
     fluid += ["--until", repr(args.until)] if args.until else []
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
     script = str(CASES / args.scene / "in.liggghts")
+    first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
+    if not os.path.exists(script):
+        return first
     solid = [str(bin_dir / "liggghts"), "-in", script, "-log", str(out / "liggghts.log"), "-screen", "none"]
-    return (["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
-            + [":", "-np", str(args.solid_ranks), *solid])
+    return first + [":", "-np", str(args.solid_ranks), *solid]
 
 
 def run_job(args, out):

@@ -5,7 +5,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, result
+from pictures import Run, draw_speed, result, studies
 
 # Maximum Reynolds number rho_s d U / mu in the literature: 17.27 (Glowinski et al. 2001, h = 1/192)
 # to 17.42 (Wan and Turek 2006); their middle is the reference, 3 % of it the tolerance.
@@ -34,12 +34,6 @@ def judged(run):
                               "rests; 0.1 % of the largest speed", 0.001,
                               scale=np.abs(probe["vy"]).max()))
     return results
-
-
-def studies(run):
-    """The comparison runs beside this one, by name of their folder."""
-    return {f.name: Run(f) for f in sorted((run.folder / "study").glob("*"))
-            if (f / "summary.json").exists()}
 
 
 def picture_field(run):

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lbm_solver/base/side.h"
 #include "lbm_solver/base/units.h"
 #include "protocol/messages.h"
 
@@ -23,12 +24,43 @@ struct BoxScene {
   Vec2 origin{0.0, 0.0};  ///< lower corner [m]
   double depth = 1.0;     ///< [m]
   SideKind x = SideKind::Wall, y = SideKind::Wall;
+  Vec2 pressure_jump{0.0, 0.0};  ///< across periodic sides, low minus high [Pa]
+};
+
+/// Something else than no-slip at rest on a part of a side.
+struct BoundaryScene {
+  enum class Kind { Velocity, Pressure, Outflow };
+  SideName side = SideName::Left;
+  Kind kind = Kind::Velocity;
+  std::optional<double> from, to;  ///< along the side [m]; absent: its end
+  Vec2 velocity{0.0, 0.0};         ///< [m/s]; at the middle of a parabola
+  bool parabolic = false;
+  double pressure = 0.0;   ///< against the reference [Pa]
+  double ramp = 0.0;       ///< time in which the value comes up [s]
+  double frequency = 0.0;  ///< velocity × cos(2 pi f t) [Hz]
+};
+
+/// A solid at rest: a disc (curved, with force and torque) or a block of whole cells.
+struct ObstacleScene {
+  bool disc = false;
+  Vec2 centre{0.0, 0.0};
+  double diameter = 0.0;              ///< [m]
+  Vec2 from{0.0, 0.0}, to{0.0, 0.0};  ///< corners of a block [m]
+};
+
+struct InitialScene {
+  enum class Kind { Rest, Uniform, TaylorGreen, ShearLayer };
+  Kind kind = Kind::Rest;
+  Vec2 velocity{0.0, 0.0};  ///< uniform [m/s]; x component: amplitude of the others
+  double sharpness = 80.0;  ///< of the shear layers: kappa
+  double perturbation = 0.05;
 };
 
 struct FluidScene {
   double density = 1000.0;    ///< [kg/m^3]
   double viscosity = 1e-6;    ///< kinematic [m^2/s]
   Vec2 gravity{0.0, 0.0};     ///< [m/s^2]
+  Vec2 body_force{0.0, 0.0};  ///< acceleration that drives the fluid [m/s^2]
   double velocity_scale = 0;  ///< largest expected speed of fluid or particles [m/s]
 };
 
@@ -36,8 +68,10 @@ struct NumericsScene {
   std::optional<double> cell;                ///< [m]
   std::optional<double> cells_per_diameter;  ///< instead of `cell`: of the smallest particle
   std::optional<double> time_step;           ///< fluid step [s]; absent: chosen by rule
-  std::string collision = "trt";
+  std::string collision = "auto";            ///< see solver/plan.h for what auto takes
+  std::string solid_term = "auto";
   double magic = 3.0 / 16.0;  ///< Λ of TRT
+  double smagorinsky = 0.0;   ///< S_c; 0: no turbulence model
 };
 
 struct ParticleScene {
@@ -49,7 +83,6 @@ struct ParticleScene {
 };
 
 struct CouplingScene {
-  std::string solid_term = "layered_holdych";
   int fluid_steps = 1;          ///< a coupling interval
   std::optional<int> substeps;  ///< solid steps a coupling interval; absent: from the stiffness
   bool inner_inertia = true;    ///< correct for the inertia of the fluid inside a particle
@@ -60,6 +93,7 @@ struct CouplingScene {
 struct OutputScene {
   double fields_every = 0.0;  ///< [s]; 0: none
   double probe_every = 0.0;   ///< [s]; 0: every interval
+  std::vector<Vec2> points;   ///< places where pressure and velocity are written [m]
 };
 
 struct Scene {
@@ -71,6 +105,10 @@ struct Scene {
   std::optional<ParticleScene> particles;
   std::optional<CouplingScene> coupling;  ///< absent: a fluid alone
   double end_time = 0.0;                  ///< [s]
+  double steady_below = 0.0;              ///< end earlier where the velocity changes less; 0: never
+  std::vector<BoundaryScene> boundaries;
+  std::vector<ObstacleScene> obstacles;
+  InitialScene initial;
   OutputScene output;
 };
 

@@ -20,4 +20,7 @@ struct RunOptions {
 Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& channel,
                     const RunOptions& options, Log& log);
 
+/// Runs a scene without a solid program.
+Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& options, Log& log);
+
 }  // namespace lbm

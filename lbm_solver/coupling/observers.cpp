@@ -39,19 +39,26 @@ Observers::Observers(const Scene& scene, const Plan& plan, const std::string& fo
     : scene_(scene),
       plan_(plan),
       log_(log),
-      probes_(folder),
       guard_every_(std::max<std::int64_t>(1, kGuardSteps / plan.fluid_steps)),
       start_(std::chrono::steady_clock::now()),
       last_progress_(start_) {
+  if (scene.coupling) probes_.emplace(folder);
+  if (!scene.output.points.empty())
+    points_.emplace(folder + "/points.csv", "time,x,y,pressure,ux,uy");
+  if (!obstacle_discs(scene, plan).empty())
+    obstacles_.emplace(folder + "/obstacles.csv", "time,obstacle,fx,fy,torque");
   if (scene.output.fields_every > 0.0) fields_.emplace(folder, plan.units);
 }
 
-void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Particles& particles) {
+void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles) {
   const double time = static_cast<double>(interval) * plan_.interval();
   intervals_done_ = interval + 1;
-  if (interval % guard_every_ == 0) guard(interval, fluid, particles);
+  if (interval % guard_every_ == 0) {
+    guard(interval, fluid, particles);
+    if (interval == 0) first_mass_excess_ = mass_excess_;
+  }
   if (time >= next_probe_ - 1e-9 * plan_.interval()) {
-    probes_.write(time, particles.states(), particles.last_loads());
+    write_probes(time, fluid, particles, false);
     while (next_probe_ <= time)
       next_probe_ += std::max(scene_.output.probe_every, plan_.interval());
   }
@@ -63,14 +70,71 @@ void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Partic
     report_progress(interval);
 }
 
-void Observers::at_end(std::int64_t interval, Fluid& fluid, const Particles& particles) {
+void Observers::at_end(std::int64_t interval, Fluid& fluid, const Particles* particles) {
   const double time = static_cast<double>(interval) * plan_.interval();
   guard(interval, fluid, particles);
-  probes_.write(time, particles.states(), {});
+  write_probes(time, fluid, particles, true);
   if (fields_) write_fields(time, fluid, particles);
 }
 
-void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles& particles) {
+void Observers::add_loads(std::span<const DiscLoad> loads) {
+  obstacle_sums_.resize(loads.size());
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    obstacle_sums_[i].force += loads[i].force;
+    obstacle_sums_[i].torque += loads[i].torque;
+  }
+  ++obstacle_steps_;
+}
+
+void Observers::write_probes(double time, const Fluid& fluid, const Particles* particles,
+                             bool last) {
+  if (probes_ && particles)
+    probes_->write(time, particles->states(),
+                   last ? std::span<const protocol::Load>{} : particles->last_loads());
+  if (points_) {
+    for (const Vec2& x : scene_.output.points) {
+      const auto c = fluid.at(plan_.units.to_lattice_position(x));
+      points_->row({time, x.x(), x.y(), (c.rho - 1.0) * plan_.units.pressure(),
+                    c.u.x() * plan_.units.velocity(), c.u.y() * plan_.units.velocity()});
+    }
+    points_->flush();
+  }
+  if (obstacles_ && obstacle_steps_ > 0) {
+    for (std::size_t i = 0; i < obstacle_sums_.size(); ++i) {
+      const DiscLoad& sum = obstacle_sums_[i];
+      const double force = plan_.units.force() / obstacle_steps_;
+      obstacles_->row({time, static_cast<double>(i + 1), sum.force.x() * force,
+                       sum.force.y() * force, sum.torque * force * plan_.units.dx});
+    }
+    obstacles_->flush();
+    obstacle_sums_.assign(obstacle_sums_.size(), DiscLoad{});
+    obstacle_steps_ = 0;
+  }
+}
+
+/// Compares the velocity field with that of the guard before: largest change over largest velocity,
+/// a unit of box length over velocity scale.
+void Observers::watch_change(Fluid& fluid) {
+  const int nx = plan_.domain.nx, ny = plan_.domain.ny;
+  std::vector<double> rho(nx), now(2 * static_cast<std::size_t>(nx) * ny);
+  double largest = 0.0, change = 0.0;
+  for (int y = 0; y < ny; ++y) {
+    const std::span row(now.data() + 2 * static_cast<std::size_t>(nx) * y, 2 * nx);
+    fluid.row(y, rho, row.first(nx), row.last(nx));
+  }
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    largest = std::max(largest, std::abs(now[i]));
+    if (!velocity_before_.empty())
+      change = std::max(change, std::abs(now[i] - velocity_before_[i]));
+  }
+  const double turnover = std::max(nx, ny) * plan_.lattice_speed / scene_.fluid.velocity_scale;
+  const double rate =
+      change / largest * turnover / static_cast<double>(guard_every_ * plan_.fluid_steps);
+  steady_ = !velocity_before_.empty() && largest > 0.0 && rate < scene_.steady_below;
+  velocity_before_ = std::move(now);
+}
+
+void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* particles) {
   const auto e = fluid.extremes();
   const Vec2 place = plan_.units.origin + plan_.units.dx * Vec2(e.x + 0.5, e.y + 0.5);
   if (!e.finite)
@@ -78,10 +142,12 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles& part
         "interval {}: the fluid is not finite at ({:.6g}, {:.6g}) m; the step was too long or the "
         "cell too coarse for this flow (Re_h = {:.3g})",
         interval, place.x(), place.y(), plan_.reynolds_cell));
-  const double particle = particles.max_speed() / plan_.units.velocity();
+  const double particle = particles ? particles->max_speed() / plan_.units.velocity() : 0.0;
   last_speed_ = e.max_speed;
   max_speed_ = std::max(max_speed_, e.max_speed);
   mass_excess_ = e.mass_excess;
+  for (const auto& patch : fluid.patches()) mass_excess_ -= patch->mass_in();
+  if (scene_.steady_below > 0.0) watch_change(fluid);
   if (std::max(e.max_speed, particle) <= kStopSpeed) return;
   const bool by_fluid = e.max_speed > particle;
   const double speed = std::max(e.max_speed, particle);
@@ -93,7 +159,7 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles& part
       speed * plan_.units.velocity(), speed, kStopSpeed, scene_.fluid.velocity_scale));
 }
 
-void Observers::write_fields(double time, Fluid& fluid, const Particles& particles) {
+void Observers::write_fields(double time, Fluid& fluid, const Particles* particles) {
   const int nx = plan_.domain.nx, ny = plan_.domain.ny;
   FieldFrame frame{time, nx, ny, {}, {}, {}, {}};
   std::vector<double> rho(nx), ux(nx), uy(nx);
@@ -108,10 +174,11 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles& particl
         frame.solid_fraction.push_back(static_cast<float>(fluid.cover()->solid_fraction(x, y)));
     }
   }
-  for (const auto& [s, shape] : particles.states())
-    frame.particles.insert(frame.particles.end(),
-                           {static_cast<double>(s.id), s.x[0], s.x[1], shape.radius, s.v[0], s.v[1],
-                            s.omega[2], static_cast<double>(shape.type)});
+  if (particles)
+    for (const auto& [s, shape] : particles->states())
+      frame.particles.insert(frame.particles.end(),
+                             {static_cast<double>(s.id), s.x[0], s.x[1], shape.radius, s.v[0],
+                              s.v[1], s.omega[2], static_cast<double>(shape.type)});
   fields_->write(frame);
 }
 
@@ -142,7 +209,7 @@ Summary Observers::summary(double wall_seconds) const {
   s.ma_paper = max_speed_;
   s.re = plan_.reynolds;
   s.re_h = plan_.reynolds_cell;
-  s.mass_drift = mass_excess_ / static_cast<double>(cells);
+  s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(cells);
   s.parameters = {{"cell", plan_.units.dx},
                   {"time_step", plan_.units.dt},
                   {"interval", plan_.interval()},
@@ -153,7 +220,8 @@ Summary Observers::summary(double wall_seconds) const {
                   {"gravity_y", scene_.fluid.gravity.y()},
                   {"depth", scene_.box.depth},
                   {"box_x", scene_.box.size.x()},
-                  {"box_y", scene_.box.size.y()}};
+                  {"box_y", scene_.box.size.y()},
+                  {"velocity_scale", scene_.fluid.velocity_scale}};
   if (scene_.particles) {
     s.parameters["diameter"] = scene_.particles->diameter.hi;
     s.parameters["particle_density"] = scene_.particles->density.hi;

@@ -34,27 +34,39 @@ class Observers {
  public:
   Observers(const Scene& scene, const Plan& plan, const std::string& folder, Log& log);
 
-  /// After an interval's loads are known. @throws NumericsError
-  void after_interval(std::int64_t interval, Fluid& fluid, const Particles& particles);
+  /// After an interval's loads are known. @param particles  null for a fluid alone
+  /// @throws NumericsError
+  void after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles);
   /// At the last state, which has no loads.
-  void at_end(std::int64_t interval, Fluid& fluid, const Particles& particles);
+  void at_end(std::int64_t interval, Fluid& fluid, const Particles* particles);
+  /// After each fluid step of a scene with obstacles: loads in the order of obstacle_discs.
+  void add_loads(std::span<const DiscLoad> loads);
+  /// A fluid alone whose velocity no longer changes (run.steady_below).
+  bool steady() const { return steady_; }
 
   Summary summary(double wall_seconds) const;
 
  private:
-  void guard(std::int64_t interval, Fluid& fluid, const Particles& particles);
-  void write_fields(double time, Fluid& fluid, const Particles& particles);
+  void guard(std::int64_t interval, Fluid& fluid, const Particles* particles);
+  void write_fields(double time, Fluid& fluid, const Particles* particles);
+  void write_probes(double time, const Fluid& fluid, const Particles* particles, bool last);
+  void watch_change(Fluid& fluid);
   void report_progress(std::int64_t interval);
 
   const Scene& scene_;
   const Plan& plan_;
   Log& log_;
-  ProbeWriter probes_;
+  std::optional<ProbeWriter> probes_;            // particles
+  std::optional<CsvWriter> points_, obstacles_;  // places, and loads on obstacles
+  std::vector<DiscLoad> obstacle_sums_;          // since the last line
+  int obstacle_steps_ = 0;
+  std::vector<double> velocity_before_;  // x, y of every cell, for steady()
+  bool steady_ = false;
   std::optional<FieldWriter> fields_;
   std::int64_t guard_every_, intervals_done_ = 0;
   double next_probe_ = 0.0, next_field_ = 0.0;
-  double max_speed_ = 0.0, last_speed_ = 0.0;  // of the fluid, lattice units
-  double mass_excess_ = 0.0;
+  double max_speed_ = 0.0, last_speed_ = 0.0;           // of the fluid, lattice units
+  double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out
   std::chrono::steady_clock::time_point start_, last_progress_;
 };
 

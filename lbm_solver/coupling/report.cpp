@@ -29,19 +29,30 @@ const char* buoyancy_text(protocol::Buoyancy b) {
 /// Seconds a fluid step takes, by doing some for a tenth of a second.
 double measure_step(Fluid& fluid, const std::vector<Disc>& discs) {
   using Clock = std::chrono::steady_clock;
-  fluid.place(discs);
-  fluid.step();
+  const auto step = [&] {
+    if (!discs.empty()) fluid.place(discs);
+    fluid.step();
+    if (!discs.empty()) fluid.loads();
+  };
+  step();
   const auto start = Clock::now();
   int steps = 0;
   double seconds = 0.0;
-  do {
-    fluid.place(discs);
-    fluid.step();
-    if (fluid.loads().size() != discs.size()) break;
+  for (; seconds < 0.1; ++steps) {
+    step();
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    ++steps;
-  } while (seconds < 0.1);
+  }
   return seconds / steps;
+}
+
+std::string boundary_text(const Scene& s) {
+  int velocity = 0, pressure = 0, outflow = 0;
+  for (const auto& b : s.boundaries) {
+    velocity += b.kind == BoundaryScene::Kind::Velocity;
+    pressure += b.kind == BoundaryScene::Kind::Pressure;
+    outflow += b.kind == BoundaryScene::Kind::Outflow;
+  }
+  return fmt::format("{} velocity, {} pressure, {} outflow", velocity, pressure, outflow);
 }
 
 }  // namespace
@@ -72,38 +83,55 @@ std::string describe(const Scene& s, const Plan& p) {
          fmt::format("interval {:.6g} s = {} fluid step(s) = {} solid steps of {:.4g} s [{}]",
                      p.interval(), p.fluid_steps, p.substeps, p.interval() / p.substeps,
                      p.substep_limit));
+  if (!p.collision_reason.empty())
+    line("collision", fmt::format("{} [{}]", p.kernel.collision, p.collision_reason));
   line("duration", fmt::format("{:.6g} s = {} intervals", s.end_time, p.intervals));
   for (const std::string& w : p.warnings) line("warning", w);
   return out;
 }
 
 std::string describe_cost(const Scene& s, const Plan& p) {
-  std::string out = fmt::format(
-      "on           collision {}, half-way walls {}, covered cells {} with B(ε,τ), loads, inner "
-      "fluid's "
-      "inertia {}, buoyancy {}\n",
-      p.kernel.collision, s.box.x == SideKind::Wall || s.box.y == SideKind::Wall ? "on" : "off",
-      p.kernel.solid_term, s.coupling && s.coupling->inner_inertia ? "on" : "off",
-      s.coupling ? buoyancy_text(s.coupling->buoyancy) : "off");
-  out += "off          body force, turbulence model, 3D\n";
-  Fluid fluid(p.domain, p.kernel);
-  if (!fluid.has_solids()) return out;
+  std::string on = "collision " + p.kernel.collision, off;
+  const auto part = [&](bool used, const std::string& text, const std::string& absent) {
+    std::string& list = used ? on : off;
+    list += (list.empty() ? "" : ", ") + (used ? text : absent);
+  };
+  const bool walls = s.box.x == SideKind::Wall || s.box.y == SideKind::Wall;
+  part(walls, "half-way walls", "walls");
+  part(!s.boundaries.empty(), "boundaries: " + boundary_text(s), "inlets and outlets");
+  part(s.box.pressure_jump.norm() > 0.0, "pressure jump", "pressure jump");
+  part(p.kernel.force, "body force", "body force");
+  part(p.kernel.turbulence != "none", "Smagorinsky turbulence", "turbulence model");
+  part(p.kernel.solid_term != "none",
+       "covered cells " + p.kernel.solid_term + " with B(ε,τ), loads", "solids");
+  part(!s.obstacles.empty(), fmt::format("{} obstacles at rest", s.obstacles.size()), "obstacles");
+  part(s.coupling.has_value(), "solid program", "solid program");
+  if (s.coupling) {
+    part(s.coupling->inner_inertia, "inertia of the fluid inside", "inertia of the fluid inside");
+    part(s.coupling->buoyancy != protocol::Buoyancy::None,
+         std::string("buoyancy ") + buoyancy_text(s.coupling->buoyancy), "buoyancy");
+  }
+  Fluid fluid = make_fluid(s, p);
   std::vector<Disc> discs;
-  for (const Vec2& x : s.particles->start)
-    discs.push_back({static_cast<std::int64_t>(discs.size() + 1),
-                     p.units.to_lattice_position(x),
-                     0.5 * s.particles->diameter.hi / p.units.dx,
-                     {0.0, 0.0},
-                     0.0});
+  if (s.coupling) {
+    discs = obstacle_discs(s, p);
+    for (const Vec2& x : s.particles->start)
+      discs.push_back({static_cast<std::int64_t>(discs.size() + 1),
+                       p.units.to_lattice_position(x),
+                       0.5 * s.particles->diameter.hi / p.units.dx,
+                       {0.0, 0.0},
+                       0.0});
+  }
   const double step = measure_step(fluid, discs);
   const double cells = static_cast<double>(p.domain.nx) * p.domain.ny;
   const double total = step * static_cast<double>(p.intervals) * p.fluid_steps;
-  out += fmt::format(
+  return fmt::format(
+      "on           {}\noff          {}, 3D\n"
       "cost         {:.3g} MB; {:.3g} s of fluid at the {:.0f} million updates/s just measured, "
-      "one thread; the "
-      "solid's time comes on top\n",
-      static_cast<double>(fluid.bytes()) * 1e-6, total, cells / step * 1e-6);
-  return out;
+      "one "
+      "thread{}\n",
+      on, off, static_cast<double>(fluid.bytes()) * 1e-6, total, cells / step * 1e-6,
+      s.coupling ? "; the solid's time comes on top" : "");
 }
 
 std::string describe(const Summary& s) {

@@ -27,7 +27,8 @@ CoverMap::CoverMap(const Domain& domain, double tau)
       index_(static_cast<std::size_t>(blocks_per_row_) * domain.ny, -1) {}
 
 void CoverMap::update(std::span<const Disc> discs) {
-  bool moved = discs.size() != discs_.size();
+  bool moved = walls_changed_ || discs.size() != discs_.size();
+  walls_changed_ = false;
   discs_.assign(discs.begin(), discs.end());
   footprints_.resize(discs.size());
   for (std::size_t d = 0; d < discs.size(); ++d)
@@ -41,21 +42,42 @@ void CoverMap::update(std::span<const Disc> discs) {
   }
   for (std::size_t d = 0; d < discs.size(); ++d) add(discs_[d], footprints_[d]);
   finish();
+  for (const Wall& wall : walls_) add(wall);
+}
+
+void CoverMap::add_wall(int x0, int y0, int x1, int y1) {
+  walls_.push_back({x0, y0, x1, y1});
+  walls_changed_ = true;
+}
+
+/// A wall cell takes no part in what the discs do: full bounce-back, whatever else is in the cell.
+void CoverMap::add(const Wall& wall) {
+  for (int y = wall.y0; y < wall.y1; ++y)
+    for (int x = wall.x0; x < wall.x1; ++x) {
+      Block& b = *block(y, x / kPackWidth);
+      const int lane = x % kPackWidth;
+      b.eps[lane] += 1.0;
+      b.weight[lane] = b.surface[lane] = b.memory[lane] = 1.0;
+      b.us[lane] = b.vs[lane] = 0.0;
+    }
+}
+
+void CoverMap::place_row(int y, int x0, int x1) {
+  for (int b = x0 / kPackWidth; b <= (x1 - 1) / kPackWidth; ++b) {
+    const std::size_t i = static_cast<std::size_t>(y) * blocks_per_row_ + b;
+    if (index_[i] >= 0) continue;
+    index_[i] = static_cast<std::int32_t>(used_.size());
+    used_.push_back(i);
+  }
 }
 
 void CoverMap::place_blocks() {
   for (const std::size_t i : used_) index_[i] = -1;
   used_.clear();
   for (const Footprint& footprint : footprints_)
-    for (const auto& span : footprint.spans()) {
-      const int last = (span.x + span.count - 1) / kPackWidth;
-      for (int b = span.x / kPackWidth; b <= last; ++b) {
-        const std::size_t i = static_cast<std::size_t>(span.y) * blocks_per_row_ + b;
-        if (index_[i] >= 0) continue;
-        index_[i] = static_cast<std::int32_t>(used_.size());
-        used_.push_back(i);
-      }
-    }
+    for (const auto& span : footprint.spans()) place_row(span.y, span.x, span.x + span.count);
+  for (const Wall& wall : walls_)
+    for (int y = wall.y0; y < wall.y1; ++y) place_row(y, wall.x0, wall.x1);
   blocks_.assign(used_.size(), Block{});
 }
 

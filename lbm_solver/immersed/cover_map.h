@@ -31,6 +31,10 @@ class CoverMap {
   /// are always taken anew.
   void update(std::span<const Disc> discs);
 
+  /// Cells [x0, x1) × [y0, y1) are a wall at rest from the next update on: bounce-back in every
+  /// cell.
+  void add_wall(int x0, int y0, int x1, int y1);
+
   /// Record of block b of row y, or null.
   Block* block(int y, int b) {
     const std::int32_t index = index_[static_cast<std::size_t>(y) * blocks_per_row_ + b];
@@ -55,7 +59,12 @@ class CoverMap {
   std::size_t bytes() const;
 
  private:
+  struct Wall {
+    int x0, y0, x1, y1;
+  };
   void place_blocks();
+  void place_row(int y, int x0, int x1);
+  void add(const Wall& wall);
   void add(const Disc& disc, const Footprint& footprint);
   void finish();
 
@@ -65,6 +74,8 @@ class CoverMap {
   std::vector<std::int32_t> index_;  // [row][block], -1: pure fluid
   std::vector<Block> blocks_;
   std::vector<std::size_t> used_;  // entries of index_ that are set
+  std::vector<Wall> walls_;
+  bool walls_changed_ = false;
   std::vector<Disc> discs_;
   std::vector<Footprint> footprints_;  // [disc]
 };

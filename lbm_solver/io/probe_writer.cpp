@@ -3,29 +3,41 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "lbm_solver/base/errors.h"
 
 namespace lbm {
 
-ProbeWriter::ProbeWriter(const std::string& folder)
-    : file_(std::fopen((folder + "/probes.csv").c_str(), "w")) {
-  if (!file_) throw InputError(folder + "/probes.csv", "cannot be written", "choose another --out");
-  fmt::print(file_.get(), "time,id,x,y,vx,vy,omega,fx,fy,torque\n");
+CsvWriter::CsvWriter(const std::string& path, const std::string& columns)
+    : file_(std::fopen(path.c_str(), "w")) {
+  if (!file_) throw InputError(path, "cannot be written", "choose another --out");
+  fmt::print(file_.get(), "{}\n", columns);
 }
+
+void CsvWriter::row(std::initializer_list<double> values) {
+  const char* separator = "";
+  for (const double v : values) {
+    fmt::print(file_.get(), "{}{:.12g}", separator, v);
+    separator = ",";
+  }
+  fmt::print(file_.get(), "\n");
+}
+
+ProbeWriter::ProbeWriter(const std::string& folder)
+    : table_(folder + "/probes.csv", "time,id,x,y,vx,vy,omega,fx,fy,torque") {}
 
 void ProbeWriter::write(double time, std::span<const protocol::Particle> particles,
                         std::span<const protocol::Load> loads) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const protocol::State& s = particles[i].state;
-    fmt::print(file_.get(), "{:.12g},{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}", time, s.id,
-               s.x[0], s.x[1], s.v[0], s.v[1], s.omega[2]);
-    if (loads.empty())
-      fmt::print(file_.get(), ",nan,nan,nan\n");
-    else
-      fmt::print(file_.get(), ",{:.12g},{:.12g},{:.12g}\n", loads[i].force[0], loads[i].force[1],
-                 loads[i].torque[2]);
+    const protocol::Load load =
+        loads.empty() ? protocol::Load{s.id, {none, none, none}, {none, none, none}} : loads[i];
+    table_.row({time, static_cast<double>(s.id), s.x[0], s.x[1], s.v[0], s.v[1], s.omega[2],
+                load.force[0], load.force[1], load.torque[2]});
   }
-  std::fflush(file_.get());
+  table_.flush();
 }
 
 }  // namespace lbm

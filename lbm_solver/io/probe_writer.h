@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,6 +10,22 @@
 #include "protocol/session.h"
 
 namespace lbm {
+
+/// A table of numbers that grows line by line and is complete on disk after each.
+class CsvWriter {
+ public:
+  /// @param path     overwritten
+  /// @param columns  first line
+  CsvWriter(const std::string& path, const std::string& columns);
+  void row(std::initializer_list<double> values);
+  void flush() { std::fflush(file_.get()); }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
+};
 
 /// Appends one line a particle to `probes.csv`: its motion at the beginning of an interval and the
 /// load it received over it. SI units.
@@ -20,10 +37,7 @@ class ProbeWriter {
              std::span<const protocol::Load> loads);
 
  private:
-  struct Close {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
-  std::unique_ptr<std::FILE, Close> file_;
+  CsvWriter table_;
 };
 
 }  // namespace lbm

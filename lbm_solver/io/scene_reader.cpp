@@ -51,6 +51,12 @@ BoxScene read_box(TableReader t) {
   box.depth = t.number_or("depth", 1.0, Bounds::positive(), "m");
   box.x = side(t, "sides_x");
   box.y = side(t, "sides_y");
+  box.pressure_jump = t.vector_or("pressure_jump", {0.0, 0.0}, "[Pa]");
+  const SideKind kinds[] = {box.x, box.y};
+  for (int k = 0; k < 2; ++k)
+    if (box.pressure_jump[k] != 0.0 && kinds[k] == SideKind::Wall)
+      t.fail("pressure_jump", "acts across sides that are not periodic",
+             "make the sides periodic, or give [[boundary]] pressures");
   t.finish();
   return box;
 }
@@ -60,6 +66,7 @@ FluidScene read_fluid(TableReader t) {
   fluid.density = t.number("density", Bounds::positive(), "kg/m³");
   fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
   fluid.gravity = t.vector_or("gravity", {0.0, 0.0}, "[m/s²]");
+  fluid.body_force = t.vector_or("body_force", {0.0, 0.0}, "[m/s²]");
   fluid.velocity_scale = t.number("velocity_scale", Bounds::positive(), "m/s");
   t.finish();
   return fluid;
@@ -73,7 +80,11 @@ NumericsScene read_numerics(TableReader t) {
     t.fail("cell", n.cell ? "stands beside cells_per_diameter" : "is missing",
            "give either cell [m] or cells_per_diameter");
   n.time_step = t.optional_number("time_step", Bounds::positive(), "s");
-  n.collision = t.choice_or("collision", "trt", {"bgk", "trt"});
+  n.collision = t.choice_or("collision", n.collision,
+                            {"auto", "bgk", "trt", "central_moment", "recursive_regularised"});
+  n.solid_term = t.choice_or("solid_term", n.solid_term,
+                             {"auto", "layered_holdych", "holdych", "noble_torczynski"});
+  n.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
   n.magic = t.number_or("magic", n.magic, {1e-6, 10.0}, "");
   t.finish();
   return n;
@@ -92,8 +103,6 @@ ParticleScene read_particles(TableReader t) {
 
 CouplingScene read_coupling(TableReader t) {
   CouplingScene c;
-  c.solid_term =
-      t.choice_or("solid_term", c.solid_term, {"layered_holdych", "holdych", "noble_torczynski"});
   c.fluid_steps = t.optional_integer("fluid_steps", 1).value_or(1);
   c.substeps = t.optional_integer("substeps", 1);
   c.inner_inertia = t.flag_or("inner_inertia", true);
@@ -104,6 +113,71 @@ CouplingScene read_coupling(TableReader t) {
   c.timeout = t.number_or("timeout", c.timeout, Bounds::positive(), "s");
   t.finish();
   return c;
+}
+
+BoundaryScene read_boundary(TableReader t, const BoxScene& box) {
+  using Kind = BoundaryScene::Kind;
+  BoundaryScene b;
+  if (!t.has("side")) t.fail("side", "is missing", "give left, right, bottom or top");
+  const std::string side = t.choice_or("side", "", {"left", "right", "bottom", "top"});
+  b.side = side == "left"     ? SideName::Left
+           : side == "right"  ? SideName::Right
+           : side == "bottom" ? SideName::Bottom
+                              : SideName::Top;
+  const bool vertical = b.side == SideName::Left || b.side == SideName::Right;
+  if ((vertical ? box.x : box.y) == SideKind::Periodic)
+    t.fail("side", "= \"" + side + "\" is periodic", "make the box's sides there \"wall\"");
+  if (!t.has("kind"))
+    t.fail("kind", "is missing", "give velocity, moving_wall, pressure or outflow");
+  const std::string kind =
+      t.choice_or("kind", "", {"velocity", "moving_wall", "pressure", "outflow"});
+  b.kind = kind == "pressure" ? Kind::Pressure : kind == "outflow" ? Kind::Outflow : Kind::Velocity;
+  const int along = vertical ? 1 : 0;
+  const double lo = box.origin[along], hi = lo + box.size[along];
+  b.from = t.optional_number("from", {lo, hi}, "m");
+  b.to = t.optional_number("to", {b.from.value_or(lo), hi}, "m");
+  if (b.kind == Kind::Velocity) {
+    b.velocity = t.vector("velocity", "[m/s]");
+    b.parabolic = t.choice_or("profile", "uniform", {"uniform", "parabolic"}) == "parabolic";
+    b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
+    if (kind == "moving_wall" && b.velocity[vertical ? 0 : 1] != 0.0)
+      t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
+  } else {
+    b.pressure = t.number_or("pressure", 0.0, {}, "Pa");
+  }
+  b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
+  t.finish();
+  return b;
+}
+
+ObstacleScene read_obstacle(TableReader t) {
+  ObstacleScene o;
+  o.disc = t.has("centre");
+  if (o.disc) {
+    o.centre = t.vector("centre", "[m]");
+    o.diameter = t.number("diameter", Bounds::positive(), "m");
+  } else {
+    o.from = t.vector("from", "[m], or centre and diameter of a disc");
+    o.to = t.vector("to", "[m]");
+  }
+  t.finish();
+  return o;
+}
+
+InitialScene read_initial(TableReader t) {
+  using Kind = InitialScene::Kind;
+  InitialScene i;
+  const std::string kind =
+      t.choice_or("kind", "rest", {"rest", "uniform", "taylor_green", "shear_layer"});
+  i.kind = kind == "uniform"        ? Kind::Uniform
+           : kind == "taylor_green" ? Kind::TaylorGreen
+           : kind == "shear_layer"  ? Kind::ShearLayer
+                                    : Kind::Rest;
+  i.velocity = t.vector_or("velocity", {0.0, 0.0}, "[m/s]");
+  i.sharpness = t.number_or("sharpness", i.sharpness, Bounds::positive(), "");
+  i.perturbation = t.number_or("perturbation", i.perturbation, Bounds::non_negative(), "");
+  t.finish();
+  return i;
 }
 
 }  // namespace
@@ -124,10 +198,16 @@ Scene read_scene(const std::vector<std::string>& files) {
     root.fail("particles", "is missing", "[coupling] needs a table [particles]");
   TableReader run = root.table("run");
   scene.end_time = run.number("end_time", Bounds::positive(), "s");
+  scene.steady_below = run.number_or("steady_below", 0.0, Bounds::non_negative(), "");
   run.finish();
+  for (const TableReader& t : root.tables("boundary"))
+    scene.boundaries.push_back(read_boundary(t, scene.box));
+  for (const TableReader& t : root.tables("obstacle")) scene.obstacles.push_back(read_obstacle(t));
+  scene.initial = read_initial(root.optional_table("initial"));
   TableReader output = root.optional_table("output");
   scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
   scene.output.probe_every = output.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
+  scene.output.points = output.vectors_or_none("points", "[m]");
   output.finish();
   root.finish();
   return scene;

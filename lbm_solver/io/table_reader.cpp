@@ -71,6 +71,16 @@ TableReader TableReader::optional_table(const std::string& key) {
   return {no_table(), path_.empty() ? key : path_ + "." + key, file_};
 }
 
+std::vector<TableReader> TableReader::tables(const std::string& key) {
+  std::vector<TableReader> result;
+  const toml::node* node = find(key);
+  if (!node) return result;
+  if (!node->is_array_of_tables()) fail(key, "is no list of tables", "write [[" + key + "]]");
+  for (const toml::node& entry : *node->as_array())
+    result.emplace_back(*entry.as_table(), key, file_);
+  return result;
+}
+
 double TableReader::to_number(const toml::node& node, const std::string& key, const Bounds& bounds,
                               const std::string& unit) const {
   const auto value = node.is_number() ? node.value<double>() : std::nullopt;

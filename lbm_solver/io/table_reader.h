@@ -34,6 +34,9 @@ class TableReader {
   /// A table that may be absent: then an empty one.
   TableReader optional_table(const std::string& key);
 
+  /// Every table of an array [[key]]; none where it is absent.
+  std::vector<TableReader> tables(const std::string& key);
+
   double number(const std::string& key, const Bounds& bounds, const std::string& unit);
   double number_or(const std::string& key, double fallback, const Bounds& bounds,
                    const std::string& unit);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/solver/fluid.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/collision/equilibrium.h"
@@ -39,6 +41,8 @@ void Fluid::place(std::span<const Disc> discs) {
 void Fluid::step() {
   kernel_->sweep(f_, stream_, cover_.get());
   stream_.advance();
+  ++steps_;
+  for (const auto& patch : patches_) patch->apply(f_, stream_, steps_);
 }
 
 Fluid::Cell Fluid::cell(int x, int y) const {
@@ -46,6 +50,26 @@ Fluid::Cell Fluid::cell(int x, int y) const {
   for (int q = 0; q < D2Q9::Q; ++q) f[q] = arriving(q, x, y);
   const Moments<double> m = moments(f);
   return {m.drho + 1.0, (Vec2(m.jx, m.jy) + half_force_) / (m.drho + 1.0)};
+}
+
+Fluid::Cell Fluid::at(const Vec2& place) const {
+  const auto split = [](double v, int n) {
+    const double inside = std::clamp(v - 0.5, 0.0, static_cast<double>(n - 1));
+    const int low = std::min(static_cast<int>(inside), n - 2);
+    return std::pair{low, inside - low};
+  };
+  const auto [x, fx] = split(place.x(), domain_.nx);
+  const auto [y, fy] = split(place.y(), domain_.ny);
+  Cell sum{0.0, {0.0, 0.0}};
+  for (const auto& [dx, dy, weight] : {std::tuple{0, 0, (1 - fx) * (1 - fy)},
+                                       {1, 0, fx * (1 - fy)},
+                                       {0, 1, (1 - fx) * fy},
+                                       {1, 1, fx * fy}}) {
+    const Cell c = cell(x + dx, y + dy);
+    sum.rho += weight * c.rho;
+    sum.u += weight * c.u;
+  }
+  return sum;
 }
 
 void Fluid::row(int y, std::span<double> rho, std::span<double> ux, std::span<double> uy) {

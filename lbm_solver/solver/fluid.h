@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "lbm_solver/boundary/patch.h"
 #include "lbm_solver/solver/kernel.h"
 
 namespace lbm {
@@ -24,11 +25,18 @@ class Fluid {
   /// Sets a cell to the equilibrium of a density and a velocity.
   void set_equilibrium(int x, int y, double rho, const Vec2& u);
 
+  /// Adds a boundary on a part of a side; patches act in the order in which they were added.
+  void add(std::unique_ptr<Patch> patch) { patches_.push_back(std::move(patch)); }
+  const std::vector<std::unique_ptr<Patch>>& patches() const { return patches_; }
+  /// Cells [x0, x1) × [y0, y1) become a wall at rest. Needs a solid term in the kernel's choice.
+  void add_wall(int x0, int y0, int x1, int y1) { cover_->add_wall(x0, y0, x1, y1); }
+
   /// Places the solids. Needs a solid term in the kernel's choice.
   void place(std::span<const Disc> discs);
 
   /// Advances by one time step.
   void step();
+  std::int64_t steps() const { return steps_; }
 
   /// Loads on the placed discs over the last step, in their order.
   std::vector<DiscLoad> loads() const { return cover_->loads(); }
@@ -39,6 +47,9 @@ class Fluid {
   };
   /// Density and velocity of the populations that have arrived at a cell.
   Cell cell(int x, int y) const;
+  /// The same at any place in lattice units, between the centres of the four nearest cells
+  /// (bilinear).
+  Cell at(const Vec2& place) const;
 
   /// Population f_q - w_q that has arrived at a cell, for tests and cell passes.
   double& arriving(int q, int x, int y) { return stream_.arriving(f_, q, x, y); }
@@ -64,6 +75,8 @@ class Fluid {
   std::unique_ptr<Kernel> kernel_;
   Vec2 half_force_;  // half the body force: rho u = Σ c f + F/2
   std::unique_ptr<CoverMap> cover_;
+  std::vector<std::unique_ptr<Patch>> patches_;
+  std::int64_t steps_ = 0;
 };
 
 }  // namespace lbm

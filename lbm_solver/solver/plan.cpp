@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kStepFractionOfContact = 0.1;  // solid step / √(m/k): the papers' λ
 constexpr double kLimitReynoldsCell = 5.0;      // beyond: fixed-Λ TRT gives noisy forces
+constexpr double kDensityChange = 0.03;         // that a pressure difference may cause
 constexpr double kFewCells = 4.0;               // a diameter below which nothing is claimed
 
 double cell_size(const Scene& s) {
@@ -76,6 +77,16 @@ void check_particles(const Scene& s) {
   }
 }
 
+/// Largest pressure difference that the boundaries impose [Pa].
+double largest_pressure(const Scene& s) {
+  double lo = 0.0, hi = 0.0;
+  for (const auto& b : s.boundaries) {
+    lo = std::min(lo, b.pressure);
+    hi = std::max(hi, b.pressure);
+  }
+  return std::max(hi - lo, s.box.pressure_jump.cwiseAbs().maxCoeff());
+}
+
 /// C = dx/dt, and what set it.
 void choose_step(const Scene& s, Plan& plan) {
   const double dx = plan.units.dx, nu = s.fluid.viscosity, u = s.fluid.velocity_scale;
@@ -83,10 +94,14 @@ void choose_step(const Scene& s, Plan& plan) {
     plan.lattice_speed = dx / *s.numerics.time_step;
     plan.step_limit = "given by the scene";
   } else {
-    const double mach = 10.0 * u, viscous = 3.0 * nu / dx;
-    plan.lattice_speed = std::max(mach, viscous);
-    plan.step_limit = mach >= viscous ? "Mach: C = 10 × velocity_scale"
-                                      : "relaxation time: C = 3 ν/Δx keeps τ ≤ 1.5";
+    const std::pair<double, const char*> limits[] = {
+        {10.0 * u, "Mach: C = 10 × velocity_scale"},
+        {3.0 * nu / dx, "relaxation time: C = 3 ν/Δx keeps τ ≤ 1.5"},
+        {std::sqrt(3.0 * largest_pressure(s) / (s.fluid.density * kDensityChange)),
+         "compressibility: C = √(3 Δp/(ρ 0.03))"}};
+    const auto binding = *std::max_element(std::begin(limits), std::end(limits));
+    plan.lattice_speed = binding.first;
+    plan.step_limit = binding.second;
   }
 }
 
@@ -107,7 +122,6 @@ void fit_to_end(const Scene& s, Plan& plan) {
 void judge_step(const Scene& s, Plan& plan) {
   const double tau = plan.kernel.parameters.tau;
   plan.u_over_c = s.fluid.velocity_scale / plan.lattice_speed;
-  plan.reynolds_cell = s.fluid.velocity_scale * plan.units.dx / s.fluid.viscosity;
   if (plan.u_over_c > kStopSpeed)
     throw InputError(
         s.file + ": numerics.time_step",
@@ -125,13 +139,41 @@ void judge_step(const Scene& s, Plan& plan) {
   if (plan.u_over_c > kWarnSpeed * 1.001)
     plan.warnings.push_back(fmt::format(
         "velocity_scale/C = {:.3g} exceeds {}: compressibility error", plan.u_over_c, kWarnSpeed));
-  if (plan.reynolds_cell > kLimitReynoldsCell)
-    plan.warnings.push_back(fmt::format(
-        "Re_h = {:.3g} exceeds {}: forces are noisy with fixed-Λ TRT; a finer cell helps",
-        plan.reynolds_cell, kLimitReynoldsCell));
+  const bool fixed_magic = plan.kernel.collision == "trt" || plan.kernel.collision == "bgk";
+  if (plan.reynolds_cell > kLimitReynoldsCell && fixed_magic && plan.kernel.solid_term != "none")
+    plan.warnings.push_back(
+        fmt::format("Re_h = {:.3g} exceeds {}: forces are noisy with {}; take collision = \"auto\" "
+                    "or a finer cell",
+                    plan.reynolds_cell, kLimitReynoldsCell, plan.kernel.collision));
   if (plan.cells_per_diameter > 0.0 && plan.cells_per_diameter < kFewCells)
     plan.warnings.push_back(fmt::format("D/Δx = {:.3g} is below {}: no accuracy is claimed",
                                         plan.cells_per_diameter, kFewCells));
+}
+
+void choose_kernel(const Scene& s, Plan& plan) {
+  const NumericsScene& n = s.numerics;
+  const double dx = plan.units.dx, dt = plan.units.dt;
+  plan.reynolds_cell = s.fluid.velocity_scale * dx / s.fluid.viscosity;
+  const bool calm = plan.reynolds_cell <= kLimitReynoldsCell;
+  KernelChoice& k = plan.kernel;
+  k.collision = n.collision;
+  if (n.collision == "auto") {
+    k.collision = calm ? "trt" : "central_moment";
+    plan.collision_reason =
+        fmt::format("auto: Re_h = {:.3g} is {} {}, where {}", plan.reynolds_cell,
+                    calm ? "at most" : "above", kLimitReynoldsCell,
+                    calm ? "TRT is most accurate" : "TRT with fixed Λ gets noisy or unstable");
+  }
+  k.turbulence = n.smagorinsky > 0.0 ? "smagorinsky" : "none";
+  k.force = s.fluid.body_force.norm() > 0.0;
+  k.solid_term = "none";
+  if (s.coupling || !s.obstacles.empty())
+    k.solid_term = n.solid_term != "auto" ? n.solid_term
+                   : k.collision == "trt" ? "layered_holdych"
+                                          : "noble_torczynski";
+  const Vec2 force = s.fluid.body_force * (dt * dt / dx);
+  k.parameters = {0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx), n.magic, n.smagorinsky, force.x(),
+                  force.y()};
 }
 
 void choose_substeps(const Scene& s, Plan& plan) {
@@ -175,10 +217,7 @@ Plan make_plan(const Scene& s) {
   if (s.coupling) plan.fluid_steps = s.coupling->fluid_steps;
   choose_step(s, plan);
   fit_to_end(s, plan);
-  plan.kernel.collision = s.numerics.collision;
-  plan.kernel.parameters.magic = s.numerics.magic;
-  plan.kernel.solid_term = s.coupling ? s.coupling->solid_term : "none";
-  plan.kernel.parameters.tau = 0.5 + 3.0 * s.fluid.viscosity * plan.units.dt / (dx * dx);
+  choose_kernel(s, plan);
   judge_step(s, plan);
   if (s.coupling) choose_substeps(s, plan);
   return plan;

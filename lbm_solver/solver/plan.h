@@ -24,6 +24,7 @@ struct Plan {
   double reynolds = 0.0;            ///< with the smallest diameter, or the box's width
   double reynolds_cell = 0.0;       ///< Re_h = u dx / nu
   double cells_per_diameter = 0.0;  ///< smallest particle; 0 without particles
+  std::string collision_reason;     ///< why auto took what it took; empty where it was given
   std::string step_limit;           ///< what chose the fluid step
   std::string substep_limit;        ///< what chose the substeps
   std::vector<std::string> warnings;
@@ -36,12 +37,20 @@ inline constexpr double kWarnSpeed = 0.1;
 inline constexpr double kStopSpeed = 0.2;
 
 /// Chooses what the scene leaves open and refuses what cannot work.
-/// Step rule: C = max(10 velocity_scale, 3 nu/dx); the second keeps tau <= 1.5.
+/// Step rule: C = max(10 velocity_scale, √(3 Δp/(rho 0.03)), 3 nu/dx); the last keeps tau <= 1.5.
+/// Collision "auto": TRT with layered Holdych while Re_h <= 5, central moments with
+/// Noble–Torczynski above.
 /// @throws InputError
 Plan make_plan(const Scene& scene);
 
 /// What the fluid says to the solid: everything of the plan that both must agree on, and the
 /// variables that its script may use instead of numbers of its own.
 protocol::Hello make_hello(const Scene& scene, const Plan& plan);
+
+/// A fluid as a scene wants it: boundaries and obstacles in place, initial state set.
+Fluid make_fluid(const Scene& scene, const Plan& plan);
+
+/// The scene's obstacles that are discs, in lattice units, ids -1, -2, …
+std::vector<Disc> obstacle_discs(const Scene& scene, const Plan& plan);
 
 }  // namespace lbm

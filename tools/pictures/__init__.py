@@ -13,6 +13,18 @@ plt.rcParams.update({
 })
 
 
+def read_table(path):
+    """Columns of a CSV file of ours: dict name -> array."""
+    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
+    return {name: rows[name] for name in rows.dtype.names}
+
+
+def studies(run):
+    """The comparison runs beside a run, by name of their folder."""
+    return {f.name: Run(f) for f in sorted((run.folder / "study").glob("*"))
+            if (f / "summary.json").exists()}
+
+
 class Run:
     """The output folder of one run."""
 
@@ -23,10 +35,9 @@ class Run:
 
     def probes(self, particle=1):
         """Columns of probes.csv of one particle: dict name -> array, SI units."""
-        table = np.genfromtxt(self.folder / "probes.csv", delimiter=",", names=True)
-        rows = np.atleast_1d(table)
-        rows = rows[rows["id"] == particle]
-        return {name: rows[name] for name in rows.dtype.names}
+        table = read_table(self.folder / "probes.csv")
+        mine = table["id"] == particle
+        return {name: column[mine] for name, column in table.items()}
 
     def frames(self):
         """Times and names of the field frames."""

@@ -14,7 +14,7 @@ constexpr double kRadius = 1e-3;
 const double kFluidMass = 1000.0 * std::numbers::pi * kRadius * kRadius * 0.5;
 
 FluidScene fluid_scene() {
-  return {1000.0, 1e-5, {0.0, -9.8}, 0.05};
+  return {.density = 1000.0, .viscosity = 1e-5, .gravity = {0.0, -9.8}, .velocity_scale = 0.05};
 }
 
 protocol::Particle particle(double vx, double omega) {

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "lbm_solver/base/side.h"
+#include "lbm_solver/base/units.h"
+#include "lbm_solver/field/esoteric_pull.h"
+
+namespace lbm {
+
+/// A population that enters cell (x, y) along q through a side. After a sweep it holds the cell's
+/// own outgoing population, bounced back half-way; a patch replaces it.
+struct Link {
+  int x, y, q;
+  double at;  ///< where the link crosses the side, in cells along it
+};
+
+/// What happens on a part of a side instead of no-slip at rest. Acts on a list of links after each
+/// sweep.
+class Patch {
+ public:
+  explicit Patch(std::vector<Link> links) : links_(std::move(links)) {}
+  virtual ~Patch() = default;
+
+  /// @param step  number of the step just made, for boundaries that change in time
+  virtual void apply(Populations& f, const EsotericPull& stream, std::int64_t step) = 0;
+
+  /// Mass that has entered through the patch since the start, lattice units: with it the mass of an
+  /// open box is accounted for to round-off.
+  double mass_in() const { return mass_in_; }
+
+  /// State that a checkpoint must keep besides the mass.
+  virtual std::vector<double>& memory() { return no_memory_; }
+  void restore_mass(double mass_in) { mass_in_ = mass_in; }
+
+ protected:
+  /// Velocity and density deviation of the next cell inward of a link's.
+  struct Inner {
+    double drho, ux, uy;
+  };
+  static Inner inner(const Populations& f, const EsotericPull& stream, int x, int y);
+
+  /// Writes a new value and books its mass.
+  void replace(double& population, double value) {
+    mass_in_ += value - population;
+    population = value;
+  }
+
+  std::vector<Link> links_;
+  double mass_in_ = 0.0;
+
+ private:
+  std::vector<double> no_memory_;
+};
+
+/// Links through the cells [begin, end) of a side. A diagonal link that crosses the side exactly at
+/// an end of the patch belongs to the wall beside it: edges of slots and corners of the box are
+/// no-slip.
+/// @param closed  the side's neighbours are periodic and the patch spans the side: it has no ends
+std::vector<Link> side_links(int nx, int ny, SideName side, int begin, int end, bool closed);
+
+/// How a boundary value depends on time: it comes up smoothly, ½(1 - cos), and may oscillate.
+struct InTime {
+  double ramp_steps = 0.0;    ///< full value from then on
+  double period_steps = 0.0;  ///< 0: steady; else cos(2 pi step / period)
+  double factor(std::int64_t step) const;
+};
+
+/// A wall or inlet of given velocity: f_q = f_-q* + 6 w_q c_q·u(s) [Ladd1994].
+class VelocityPatch final : public Patch {
+ public:
+  /// @param velocity    at the middle, lattice units
+  /// @param parabolic   velocity × 4 s (L - s)/L² along the patch, else uniform
+  VelocityPatch(std::vector<Link> links, const Vec2& velocity, bool parabolic, int begin, int end,
+                const InTime& in_time);
+  void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
+
+ private:
+  std::vector<double> gain_;  // [link]
+  InTime in_time_;
+};
+
+/// A given pressure on the side: what arrives is what arrives at the next cell inward, with that cell's
+/// equilibrium density exchanged for the boundary's (non-equilibrium extrapolation [GuoZhengShi2002]):
+///   f_q = f_q(inner) + f_q^eq(rho, u) - f_q^eq(rho_inner, u),   u of the next cell inward.
+/// The side lies half a cell beyond the boundary cell: rho = (2 rho_side + rho_inner)/3 there.
+/// With `absorbing` the pressure gives way to outgoing sound: of the wave amplitudes
+///   J± = drho ± u_n/c_s
+/// the outgoing one is taken from inside, the incoming one from the target and the running mean of u_n.
+class PressurePatch final : public Patch {
+ public:
+  /// @param drho        target density deviation
+  /// @param memory_steps  time scale of the running mean, absorbing only
+  PressurePatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time,
+                bool absorbing, double memory_steps);
+  void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
+  std::vector<double>& memory() override { return mean_; }
+
+ private:
+  int inward_x_, inward_y_;
+  double drho_;
+  InTime in_time_;
+  bool absorbing_;
+  double forget_;
+  std::vector<double> mean_;  // [link] running mean of the outward velocity, absorbing only
+};
+
+/// Pressure jump across a periodic pair of sides [after KimPitsch2007]: populations that enter through
+/// the low side gain w_q Δrho, those through the high side lose it. The momentum density is that of the
+/// other side, so that no mass is made.
+class PressureJumpPatch final : public Patch {
+ public:
+  /// @param low  the patch is on the left or bottom side
+  PressureJumpPatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time);
+  void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
+
+ private:
+  int inward_x_, inward_y_;
+  double drho_;
+  InTime in_time_;
+};
+
+}  // namespace lbm
