@@ -27,6 +27,8 @@ Inward inward(SideName side) {
   return {0, 0};
 }
 
+constexpr double kCourant = 0.57735026918962576;  // c_s: cells that sound crosses in a step
+
 /// 9/2 (c·u)² - 3/2 u²
 double square_terms(int q, double ux, double uy) {
   const double cu = D2Q9::c[q][0] * ux + D2Q9::c[q][1] * uy;
@@ -86,33 +88,44 @@ void VelocityPatch::apply(Populations& f, const EsotericPull& stream, std::int64
 }
 
 PressurePatch::PressurePatch(std::vector<Link> links, SideName side, double drho,
-                             const InTime& in_time, bool absorbing, double memory_steps)
+                             const InTime& in_time)
     : Patch(std::move(links)),
       inward_x_(inward(side).x),
       inward_y_(inward(side).y),
       drho_(drho),
-      in_time_(in_time),
-      absorbing_(absorbing),
-      forget_(1.0 / memory_steps),
-      mean_(absorbing ? links_.size() : 0, 0.0) {}
+      in_time_(in_time) {}
 
 void PressurePatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
   const double target = drho_ * in_time_.factor(step);
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const Link& link = links_[i];
+  for (const Link& link : links_) {
     const Inner in = inner(f, stream, link.x + inward_x_, link.y + inward_y_);
-    double drho = target;
-    if (absorbing_) {
-      const double outward = -(in.ux * inward_x_ + in.uy * inward_y_);
-      mean_[i] += forget_ * (outward - mean_[i]);
-      drho = 0.5 * (in.drho + target + std::numbers::sqrt3 * (outward - mean_[i]));
-    }
-    const double at_cell = (2.0 * drho + in.drho) / 3.0;
+    const double at_cell = (2.0 * target + in.drho) / 3.0;
     const double cu = D2Q9::c[link.q][0] * in.ux + D2Q9::c[link.q][1] * in.uy;
-    const double per_density = D2Q9::w[link.q] * (1.0 + 3.0 * cu + square_terms(link.q, in.ux, in.uy));
+    const double per_density =
+        D2Q9::w[link.q] * (1.0 + 3.0 * cu + square_terms(link.q, in.ux, in.uy));
     replace(stream.arriving(f, link.q, link.x, link.y),
             stream.arriving(f, link.q, link.x + inward_x_, link.y + inward_y_) +
                 (at_cell - in.drho) * per_density);
+  }
+}
+
+OutflowPatch::OutflowPatch(std::vector<Link> links, SideName side, double drho, double relax)
+    : Patch(std::move(links)),
+      inward_x_(inward(side).x),
+      inward_y_(inward(side).y),
+      drho_(drho),
+      relax_(relax),
+      memory_(links_.size(), 0.0) {}
+
+void OutflowPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    const int x = link.x + inward_x_, y = link.y + inward_y_;
+    const double carried =
+        (memory_[i] + kCourant * stream.arriving(f, link.q, x, y)) / (1.0 + kCourant);
+    const double pull = relax_ * D2Q9::w[link.q] * (drho_ - inner(f, stream, x, y).drho);
+    memory_[i] = carried + pull;
+    replace(stream.arriving(f, link.q, link.x, link.y), memory_[i]);
   }
 }
 
@@ -129,8 +142,8 @@ void PressureJumpPatch::apply(Populations& f, const EsotericPull& stream, std::i
   for (const Link& link : links_) {
     const Inner in = inner(f, stream, link.x + inward_x_, link.y + inward_y_);
     double& population = stream.arriving(f, link.q, link.x, link.y);
-    replace(population, population + D2Q9::w[link.q] * drho *
-                                         (1.0 + square_terms(link.q, in.ux, in.uy)));
+    replace(population,
+            population + D2Q9::w[link.q] * drho * (1.0 + square_terms(link.q, in.ux, in.uy)));
   }
 }
 

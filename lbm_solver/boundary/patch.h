@@ -83,34 +83,45 @@ class VelocityPatch final : public Patch {
   InTime in_time_;
 };
 
-/// A given pressure on the side: what arrives is what arrives at the next cell inward, with that cell's
-/// equilibrium density exchanged for the boundary's (non-equilibrium extrapolation [GuoZhengShi2002]):
+/// A given pressure on the side: what arrives is what arrives at the next cell inward, with that
+/// cell's equilibrium density exchanged for the boundary's (non-equilibrium extrapolation
+/// [GuoZhengShi2002]):
 ///   f_q = f_q(inner) + f_q^eq(rho, u) - f_q^eq(rho_inner, u),   u of the next cell inward.
 /// The side lies half a cell beyond the boundary cell: rho = (2 rho_side + rho_inner)/3 there.
-/// With `absorbing` the pressure gives way to outgoing sound: of the wave amplitudes
-///   J± = drho ± u_n/c_s
-/// the outgoing one is taken from inside, the incoming one from the target and the running mean of u_n.
 class PressurePatch final : public Patch {
  public:
-  /// @param drho        target density deviation
-  /// @param memory_steps  time scale of the running mean, absorbing only
-  PressurePatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time,
-                bool absorbing, double memory_steps);
+  /// @param drho  target density deviation
+  PressurePatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time);
   void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
-  std::vector<double>& memory() override { return mean_; }
 
  private:
   int inward_x_, inward_y_;
   double drho_;
   InTime in_time_;
-  bool absorbing_;
-  double forget_;
-  std::vector<double> mean_;  // [link] running mean of the outward velocity, absorbing only
 };
 
-/// Pressure jump across a periodic pair of sides [after KimPitsch2007]: populations that enter through
-/// the low side gain w_q Δrho, those through the high side lose it. The momentum density is that of the
-/// other side, so that no mass is made.
+/// An open end that lets sound and vortices out: what arrives is carried outward with the speed of
+/// sound,
+///   ∂f_q/∂t + c_s ∂f_q/∂n = 0   (implicit upwind),
+/// while a weak pull brings the mean pressure to its target.
+class OutflowPatch final : public Patch {
+ public:
+  /// @param drho   target density deviation
+  /// @param relax  part of the deviation from it that is taken away in a step, about c_s / box
+  /// length
+  OutflowPatch(std::vector<Link> links, SideName side, double drho, double relax);
+  void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
+  std::vector<double>& memory() override { return memory_; }
+
+ private:
+  int inward_x_, inward_y_;
+  double drho_, relax_;
+  std::vector<double> memory_;  // [link] what arrived in the step before
+};
+
+/// Pressure jump across a periodic pair of sides [after KimPitsch2007]: populations that enter
+/// through the low side gain w_q Δrho, those through the high side lose it. The momentum density is
+/// that of the other side, so that no mass is made.
 class PressureJumpPatch final : public Patch {
  public:
   /// @param low  the patch is on the left or bottom side

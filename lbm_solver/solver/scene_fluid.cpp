@@ -11,9 +11,6 @@
 namespace lbm {
 namespace {
 
-constexpr double kSoundCrossings =
-    20.0;  // time scale of an outflow's running mean, in box lengths / c_s
-
 /// Nearest cell border of a length along an axis; complains where it lies off by more than a tenth.
 int border(const Scene& s, const Plan& p, double at, int axis, const std::string& what) {
   const double cells = (at - s.box.origin[axis]) / p.units.dx, whole = std::round(cells);
@@ -43,10 +40,14 @@ void add_boundary(const Scene& s, const Plan& p, const BoundaryScene& b, Fluid& 
                                               begin, end, in_time));
     return;
   }
+  const double drho = b.pressure / p.units.pressure();
+  if (b.kind == BoundaryScene::Kind::Pressure) {
+    fluid.add(std::make_unique<PressurePatch>(std::move(links), b.side, drho, in_time));
+    return;
+  }
   const double length = std::max(p.domain.nx, p.domain.ny);
-  fluid.add(std::make_unique<PressurePatch>(
-      std::move(links), b.side, b.pressure / p.units.pressure(), in_time,
-      b.kind == BoundaryScene::Kind::Outflow, kSoundCrossings * length * std::numbers::sqrt3));
+  fluid.add(std::make_unique<OutflowPatch>(std::move(links), b.side, drho,
+                                           1.0 / (std::numbers::sqrt3 * length)));
 }
 
 void add_pressure_jump(const Plan& p, int axis, double jump, Fluid& fluid) {

@@ -107,7 +107,8 @@ struct FreeDisc {
 FreeDisc settle(double density_ratio, int steps, bool inner_inertia) {
   const double diameter = 0.0025, radius = 0.5 * diameter, dx = diameter / 10;
   const Units units{dx, 4e-4, 1000.0, 1.0, {0.0, 0.0}};
-  const FluidScene scene{.density = 1000.0, .viscosity = 1e-5, .gravity = {0.0, -9.8}, .velocity_scale = 0.06};
+  const FluidScene scene{
+      .density = 1000.0, .viscosity = 1e-5, .gravity = {0.0, -9.8}, .velocity_scale = 0.06};
   CouplingScene coupling;
   coupling.inner_inertia = inner_inertia;
   const double tau = 0.5 + 3.0 * scene.viscosity * units.dt / (dx * dx);

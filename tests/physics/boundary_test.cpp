@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Boundaries, forcing and turbulence against what they must give; stability of the operators.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lbm_solver/solver/fluid.h"
+
+namespace {
+
+using namespace lbm;
+using std::numbers::pi;
+
+void run(Fluid& fluid, int steps) {
+  for (int s = 0; s < steps; ++s) fluid.step();
+}
+
+std::unique_ptr<Patch> lid(int nx, int ny, double u, const InTime& in_time = {}) {
+  return std::make_unique<VelocityPatch>(side_links(nx, ny, SideName::Top, 0, nx, true),
+                                         Vec2(u, 0.0), false, 0, nx, in_time);
+}
+
+TEST(Couette, IsLinearToRoundOffWithEveryOperator) {
+  for (const std::string& collision : known_collisions()) {
+    const int nx = 5, ny = 16;
+    Fluid fluid({nx, ny, Side::Periodic, Side::Wall},
+                {collision, "none", false, "none", {.tau = 1.0}});
+    fluid.add(lid(nx, ny, 0.01));
+    run(fluid, 20000);
+    for (int y = 0; y < ny; ++y)
+      EXPECT_NEAR(fluid.cell(2, y).u.x(), 0.01 * (y + 0.5) / ny, 1e-12) << collision << ' ' << y;
+  }
+}
+
+TEST(Poiseuille, IsExactWithTrtAndTheMagicRate) {
+  const int nx = 5, ny = 16;
+  for (const double tau : {0.55, 0.8, 1.5}) {
+    const double nu = (tau - 0.5) / 3.0, u = 0.01, g = 8.0 * nu * u / (ny * ny);
+    Fluid fluid({nx, ny, Side::Periodic, Side::Wall},
+                {"trt", "none", true, "none", {.tau = tau, .force_x = g}});
+    run(fluid, static_cast<int>(4.0 * ny * ny / nu));
+    for (int y = 0; y < ny; ++y) {
+      const double s = y + 0.5;
+      EXPECT_NEAR(fluid.cell(2, y).u.x(), g * s * (ny - s) / (2.0 * nu), 1e-10 * u) << tau;
+    }
+  }
+}
+
+/// Every operator and the body force: the momentum of a periodic box grows by F a step.
+TEST(BodyForce, GivesItsMomentumToEveryOperator) {
+  for (const std::string& collision : known_collisions())
+    for (const char* turbulence : {"none", "smagorinsky"}) {
+      Fluid fluid({9, 7, Side::Periodic, Side::Periodic},
+                  {collision,
+                   turbulence,
+                   true,
+                   "none",
+                   {.tau = 0.6, .smagorinsky = 0.1, .force_x = 1e-5, .force_y = -2e-5}});
+      run(fluid, 100);
+      // rho u = Σ c f + F/2 after 100 steps from Σ c f = 0; round-off of 100 whole populations
+      EXPECT_NEAR(fluid.cell(4, 3).u.x(), 100.5e-5, 1e-14) << collision;
+      EXPECT_NEAR(fluid.cell(4, 3).u.y(), -201.0e-5, 1e-14) << collision;
+    }
+}
+
+/// Largest error of Stokes' second problem, u = U e^{-ky} cos(wt - ky), in its first two wave
+/// lengths.
+double stokes_error(int cells_per_depth) {
+  const double tau = 0.8, nu = (tau - 0.5) / 3.0, k = 1.0 / cells_per_depth, w = 2.0 * nu * k * k;
+  const int nx = 3, ny = 12 * cells_per_depth;
+  const double period = 2.0 * pi / w, u = 0.01;
+  Fluid fluid({nx, ny, Side::Periodic, Side::Wall}, {"trt", "none", false, "none", {.tau = tau}});
+  fluid.add(lid(nx, ny, u, InTime{0.0, period}));
+  const int steps = static_cast<int>(8.0 * period);
+  run(fluid, steps);
+  double error = 0.0;
+  for (int y = ny - 1; y > ny - 4 * cells_per_depth; --y) {
+    const double depth = k * (ny - y - 0.5);
+    const double exact = u * std::exp(-depth) * std::cos(w * steps - depth);
+    error = std::max(error, std::abs(fluid.cell(1, y).u.x() - exact) / u);
+  }
+  return error;
+}
+
+TEST(StokesSecondProblem, ConvergesWithSecondOrder) {
+  const double coarse = stokes_error(4), fine = stokes_error(8);
+  EXPECT_LT(coarse, 0.02);
+  EXPECT_NEAR(std::log2(coarse / fine), 2.0,
+              0.35);  // the phase of the last whole step adds a little
+}
+
+TEST(Smagorinsky, GivesItsViscosityInPureShear) {
+  // Couette: |S| = shear rate, nu_t = (S_c)² |S|, the same everywhere; the wall's force tells it
+  const int nx = 5, ny = 16;
+  const double tau = 0.502, s_c = 0.3, u = 0.02, rate = u / ny;
+  for (const std::string& collision : known_collisions()) {
+    const KernelChoice les{
+        collision, "smagorinsky", false, "none", {.tau = tau, .smagorinsky = s_c}};
+    Fluid fluid({nx, ny, Side::Periodic, Side::Wall}, les);
+    for (int y = 0; y < ny; ++y)
+      for (int x = 0; x < nx; ++x) fluid.set_equilibrium(x, y, 1.0, {rate * (y + 0.5), 0.0});
+    fluid.add(lid(nx, ny, u));
+    run(fluid, 40000);
+    // shear stress in the middle: rho (nu + nu_t) rate = -(1 - 1/(2 tau*)) Σ c_x c_y f^neq
+    double stress = 0.0;
+    const auto c = fluid.cell(2, ny / 2);
+    for (int q = 5; q < D2Q9::Q; ++q)
+      stress += D2Q9::c[q][0] * D2Q9::c[q][1] * fluid.arriving(q, 2, ny / 2);
+    stress -= c.rho * c.u.x() * c.u.y();
+    const double nu = (tau - 0.5) / 3.0 + s_c * s_c * rate, total = 3.0 * nu + 0.5;
+    // TRT shows a layer at a moving lid when tau -> 1/2 (its odd rate is then 1/90): 0.9 % here, growing
+    // with the lid's speed; the cause is not known. The other operators keep to 0.1 %.
+    EXPECT_NEAR(-(1.0 - 0.5 / total) * stress / (nu * rate), 1.0, collision == "trt" ? 1e-2 : 1e-3)
+        << collision;
+  }
+}
+
+/// Part of a sound pulse that comes back from the right side.
+double reflection(bool absorbing) {
+  const int nx = 400, ny = 4, width = 12;
+  Fluid fluid({nx, ny, Side::Wall, Side::Periodic}, {"trt", "none", false, "none", {.tau = 0.55}});
+  auto links = side_links(nx, ny, SideName::Right, 0, ny, true);
+  if (absorbing)
+    fluid.add(std::make_unique<OutflowPatch>(links, SideName::Right, 0.0, 0.58 / nx));
+  else
+    fluid.add(std::make_unique<PressurePatch>(links, SideName::Right, 0.0, InTime{}));
+  for (int x = 0; x < nx; ++x)
+    for (int y = 0; y < ny; ++y) {
+      const double p = 1e-4 * std::exp(-std::pow((x - 250.0) / width, 2));
+      fluid.set_equilibrium(x, y, 1.0 + p, {p / std::sqrt(3.0), 0.0});  // runs to the right
+    }
+  run(fluid, static_cast<int>(220 * std::sqrt(3.0)));  // there and some way back
+  double largest = 0.0;
+  for (int x = 0; x < nx; ++x) largest = std::max(largest, std::abs(fluid.cell(x, 2).rho - 1.0));
+  return largest / 1e-4;
+}
+
+TEST(Outflow, ReflectsLittle) {
+  EXPECT_GT(reflection(false), 0.5);  // a given pressure sends the pulse back
+  EXPECT_LT(reflection(true), 0.05);
+}
+
+TEST(ImpulsivePressure, WithARampOvershootsLittle) {
+  const int nx = 120, ny = 5;
+  const double drho = 0.01, sound = nx * std::sqrt(3.0);
+  Fluid fluid({nx, ny, Side::Wall, Side::Periodic}, {"trt", "none", false, "none", {.tau = 0.6}});
+  fluid.add(std::make_unique<PressurePatch>(side_links(nx, ny, SideName::Left, 0, ny, true),
+                                            SideName::Left, drho, InTime{6.0 * sound, 0.0}));
+  double largest = 0.0;
+  for (int step = 0; step < 20 * sound; ++step) {
+    fluid.step();
+    largest = std::max(largest, fluid.cell(nx - 1, 2).rho - 1.0);
+  }
+  EXPECT_LT(largest, 1.1 * drho);
+  EXPECT_GT(largest, 0.95 * drho);
+}
+
+/// Double shear layer [MinionBrown1997], N = 128, kappa = 80, to t = 1.5: did it stay bounded?
+bool shear_layer_bounded(const std::string& collision, double reynolds, double u) {
+  const int n = 128;
+  const double nu = u * n / reynolds;
+  Fluid fluid({n, n, Side::Periodic, Side::Periodic},
+              {collision, "none", false, "none", {.tau = 0.5 + 3.0 * nu}});
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const double a = (x + 0.5) / n, b = (y + 0.5) / n;
+      fluid.set_equilibrium(x, y, 1.0,
+                            {u * std::tanh(80.0 * (b <= 0.5 ? b - 0.25 : 0.75 - b)),
+                             0.05 * u * std::sin(2.0 * pi * (a + 0.25))});
+    }
+  run(fluid, static_cast<int>(1.5 * n / u));
+  const auto e = fluid.extremes();
+  return e.finite && e.max_speed < 2.5 * u;
+}
+
+TEST(ShearLayer, CentralMomentsAndRecursiveRegularisedStayBoundedInAllSixCases) {
+  for (const double reynolds : {1e4, 1e5})
+    for (const double u : {0.05, 0.1, 0.2})
+      for (const char* collision : {"central_moment", "recursive_regularised"})
+        EXPECT_TRUE(shear_layer_bounded(collision, reynolds, u))
+            << collision << ' ' << reynolds << ' ' << u;
+}
+
+}  // namespace
