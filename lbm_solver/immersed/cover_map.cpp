@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/immersed/cover_map.h"
 
+#include <algorithm>
+
 #include "lbm_solver/immersed/weight.h"
 
 namespace lbm {
@@ -8,14 +10,13 @@ namespace {
 
 constexpr double kWhole = 1.0 - 1e-12;  // a cell covered to round-off is covered whole
 
-/// Calls f(block, lane, fraction, arm_x) for the cells of a span; `find` gives the block.
-template <class Find, class F>
-void for_each_cell(const Footprint::Span& span, const std::vector<double>& fractions, Find&& find,
-                   F&& f) {
-  for (int k = 0; k < span.count; ++k) {
-    const int x = span.x + k;
-    f(find(span.y, x / kPackWidth), x % kPackWidth, fractions[span.eps + k], span.arm_x + k);
-  }
+/// 0, 1, 2, … in the lanes of a pack.
+Pack lane_numbers() {
+  return Pack([](auto lane) { return static_cast<double>(lane); });
+}
+
+Pack pack(const std::array<double, kPackWidth>& lanes) {
+  return load<Pack>(lanes.data());
 }
 
 }  // namespace
@@ -57,41 +58,45 @@ void CoverMap::add(const Wall& wall) {
       Block& b = *block(y, x / kPackWidth);
       const int lane = x % kPackWidth;
       b.eps[lane] += 1.0;
+      b.per_eps[lane] = 1.0 / b.eps[lane];
       b.weight[lane] = b.surface[lane] = b.memory[lane] = 1.0;
       b.us[lane] = b.vs[lane] = 0.0;
     }
 }
 
-void CoverMap::place_row(int y, int x0, int x1) {
-  for (int b = x0 / kPackWidth; b <= (x1 - 1) / kPackWidth; ++b) {
-    const std::size_t i = static_cast<std::size_t>(y) * blocks_per_row_ + b;
-    if (index_[i] >= 0) continue;
-    index_[i] = static_cast<std::int32_t>(used_.size());
-    used_.push_back(i);
-  }
+void CoverMap::mark(int y, int x0, int x1) {
+  std::int32_t* row = &index_[static_cast<std::size_t>(y) * blocks_per_row_];
+  for (int b = x0 / kPackWidth; b <= (x1 - 1) / kPackWidth; ++b) row[b] = 0;
 }
 
+/// Records are numbered in the order in which a sweep meets them: it then reads them one after
+/// another.
 void CoverMap::place_blocks() {
-  for (const std::size_t i : used_) index_[i] = -1;
-  used_.clear();
+  std::fill(index_.begin(), index_.end(), -1);
   for (const Footprint& footprint : footprints_)
-    for (const auto& span : footprint.spans()) place_row(span.y, span.x, span.x + span.count);
+    for (const auto& span : footprint.spans()) mark(span.y, span.x(), span.x() + span.count());
   for (const Wall& wall : walls_)
-    for (int y = wall.y0; y < wall.y1; ++y) place_row(y, wall.x0, wall.x1);
-  blocks_.assign(used_.size(), Block{});
+    for (int y = wall.y0; y < wall.y1; ++y) mark(y, wall.x0, wall.x1);
+  std::int32_t records = 0;
+  for (std::int32_t& index : index_)
+    if (index >= 0) index = records++;
+  blocks_.resize(records);
 }
 
 void CoverMap::add(const Disc& disc, const Footprint& footprint) {
-  const auto find = [this](int y, int b) { return block(y, b); };
+  const Pack lanes = lane_numbers();
   for (const auto& span : footprint.spans()) {
-    const double row_u = disc.velocity.x() - disc.spin * span.arm_y;
-    for_each_cell(span, footprint.fractions(), find,
-                  [&](Block* b, int lane, double eps, double arm_x) {
-                    b->eps[lane] += eps;
-                    b->us[lane] += eps * row_u;
-                    b->vs[lane] += eps * (disc.velocity.y() + disc.spin * arm_x);
-                  });
-    for (int x = span.x + span.core_begin; x < span.x + span.core_end; ++x)
+    const Pack u(disc.velocity.x() - disc.spin * span.arm_y);
+    for (int k = 0; k < span.blocks; ++k) {
+      Block& b = *block(span.y, span.block + k);
+      const Pack eps = load<Pack>(&footprint.fractions()[span.eps + k * kPackWidth]);
+      const Pack arm_x = Pack(span.arm_x + k * kPackWidth) + lanes;
+      store(b.eps.data(), pack(b.eps) + eps);
+      store(b.us.data(), pack(b.us) + eps * u);
+      store(b.vs.data(), pack(b.vs) + eps * (Pack(disc.velocity.y()) + Pack(disc.spin) * arm_x));
+    }
+    const int first = span.x();
+    for (int x = first + span.core_begin; x < first + span.core_end; ++x)
       block(span.y, x / kPackWidth)->memory[x % kPackWidth] = 0.0;
   }
 }
@@ -100,6 +105,7 @@ void CoverMap::finish() {
   for (Block& b : blocks_)
     for (int lane = 0; lane < kPackWidth; ++lane) {
       const double scale = b.eps[lane] > 0.0 ? 1.0 / b.eps[lane] : 0.0;
+      b.per_eps[lane] = scale;
       b.us[lane] *= scale;
       b.vs[lane] *= scale;
       b.weight[lane] = immersed_weight(b.eps[lane], tau_);
@@ -109,18 +115,21 @@ void CoverMap::finish() {
 
 std::vector<DiscLoad> CoverMap::loads() const {
   std::vector<DiscLoad> result(discs_.size());
-  const auto find = [this](int y, int b) { return block(y, b); };
+  const Pack lanes = lane_numbers();
   for (std::size_t d = 0; d < discs_.size(); ++d) {
-    DiscLoad& sum = result[d];
+    Pack fx(0.0), fy(0.0), torque(0.0);
     for (const auto& span : footprints_[d].spans())
-      for_each_cell(span, footprints_[d].fractions(), find,
-                    [&](const Block* b, int lane, double eps, double arm_x) {
-                      if (eps <= 0.0) return;
-                      const double part = eps / b->eps[lane];
-                      const Vec2 force(part * b->fx[lane], part * b->fy[lane]);
-                      sum.force += force;
-                      sum.torque += arm_x * force.y() - span.arm_y * force.x();
-                    });
+      for (int k = 0; k < span.blocks; ++k) {
+        const Block& b = *block(span.y, span.block + k);
+        const Pack eps = load<Pack>(&footprints_[d].fractions()[span.eps + k * kPackWidth]);
+        const Pack part = eps * pack(b.per_eps);
+        const Pack x = part * pack(b.fx), y = part * pack(b.fy);
+        fx += x;
+        fy += y;
+        torque += (Pack(span.arm_x + k * kPackWidth) + lanes) * y - Pack(span.arm_y) * x;
+      }
+    using std::experimental::reduce;
+    result[d] = {{reduce(fx), reduce(fy)}, reduce(torque)};
   }
   return result;
 }

@@ -18,6 +18,7 @@ class CoverMap {
   /// What the collision of one block needs, and the force it leaves behind, lane by lane.
   struct alignas(64) Block {
     std::array<double, kPackWidth> eps;      ///< Σ ε over the solids in the cell
+    std::array<double, kPackWidth> per_eps;  ///< 1 / Σ ε, 0 where nothing covers the cell
     std::array<double, kPackWidth> weight;   ///< B
     std::array<double, kPackWidth> surface;  ///< 1 where Σ ε < 1, else 0
     std::array<double, kPackWidth> memory;   ///< 0 in the core of a solid, else 1
@@ -63,7 +64,7 @@ class CoverMap {
     int x0, y0, x1, y1;
   };
   void place_blocks();
-  void place_row(int y, int x0, int x1);
+  void mark(int y, int x0, int x1);
   void add(const Wall& wall);
   void add(const Disc& disc, const Footprint& footprint);
   void finish();
@@ -73,7 +74,6 @@ class CoverMap {
   int blocks_per_row_;
   std::vector<std::int32_t> index_;  // [row][block], -1: pure fluid
   std::vector<Block> blocks_;
-  std::vector<std::size_t> used_;  // entries of index_ that are set
   std::vector<Wall> walls_;
   bool walls_changed_ = false;
   std::vector<Disc> discs_;

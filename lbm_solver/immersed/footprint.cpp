@@ -54,17 +54,22 @@ void Footprint::add_image(const Vec2& centre, double radius, const Domain& domai
     const int x_begin = clip(std::floor(centre.x() - half), domain.nx);
     const int x_end = clip(std::ceil(centre.x() + half), domain.nx);
     if (x_begin >= x_end) continue;
+    const int block = x_begin / kPackWidth, blocks = (x_end - 1) / kPackWidth - block + 1;
+    const int first = block * kPackWidth;
+    const double first_arm = first + 0.5 - centre.x();
     const double core2 = core * core - dy * dy, half_core = core2 > 0.0 ? std::sqrt(core2) : 0.0;
-    const double first_arm = x_begin + 0.5 - centre.x();
     const auto clip_core = [&](double arm) {
-      return std::clamp(static_cast<int>(std::ceil(arm - first_arm)), 0, x_end - x_begin);
+      return std::clamp(static_cast<int>(std::ceil(arm - first_arm)), x_begin - first,
+                        x_end - first);
     };
-    spans_.push_back({x_begin, y, x_end - x_begin, static_cast<int>(fractions_.size()),
-                      clip_core(-half_core), clip_core(half_core), first_arm, dy});
+    const int eps = static_cast<int>(fractions_.size());
+    spans_.push_back(
+        {y, block, blocks, eps, clip_core(-half_core), clip_core(half_core), first_arm, dy});
+    fractions_.resize(fractions_.size() + static_cast<std::size_t>(blocks) * kPackWidth, 0.0);
     const double full2 = inner * inner - dy * dy;
     for (int x = x_begin; x < x_end; ++x) {
       const double dx = x + 0.5 - centre.x();
-      fractions_.push_back(dx * dx < full2 ? 1.0 : disc_fraction(dx, dy, radius));
+      fractions_[eps + x - first] = dx * dx < full2 ? 1.0 : disc_fraction(dx, dy, radius);
     }
   }
 }

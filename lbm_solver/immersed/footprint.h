@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "lbm_solver/base/simd.h"
 #include "lbm_solver/field/populations.h"
 #include "lbm_solver/immersed/disc.h"
 
@@ -18,15 +19,20 @@ struct Domain {
 /// the surface cells (0.71) and the layer of whole cells that bounds the flow outside are above it.
 inline constexpr double kCoreDepth = 2.0;
 
-/// The cells that one disc covers, as row spans of solid fractions, its periodic images included.
+/// The cells that one disc covers, as spans of SIMD blocks with a solid fraction a lane, its
+/// periodic images included.
 class Footprint {
  public:
+  /// Whole SIMD blocks of one row. Lanes that the disc does not cover have fraction 0.
   struct Span {
-    int x, y;                  ///< first cell, inside the lattice
-    int count;                 ///< cells
-    int eps;                   ///< index of the first fraction in `fractions`
-    int core_begin, core_end;  ///< cells of the core, counted from the first cell
-    double arm_x, arm_y;  ///< centre of the first cell minus centre of the image that covers it
+    int y, block;  ///< row, first block
+    int blocks;
+    int eps;                   ///< index of the fraction of the first lane in `fractions`
+    int core_begin, core_end;  ///< lanes of the core, counted from the first
+    double arm_x, arm_y;       ///< centre of the first lane's cell minus that of the covering image
+
+    int x() const { return block * kPackWidth; }       ///< cell of the first lane
+    int count() const { return blocks * kPackWidth; }  ///< lanes
   };
 
   /// Computes the spans anew unless the disc is where it was.

@@ -18,9 +18,10 @@ std::vector<double> fraction_map(const Disc& disc, const Domain& d) {
   footprint.update(disc, d);
   std::vector<double> map(static_cast<std::size_t>(d.nx) * d.ny, 0.0);
   for (const auto& span : footprint.spans())
-    for (int k = 0; k < span.count; ++k)
-      map[static_cast<std::size_t>(span.y) * d.nx + span.x + k] +=
-          footprint.fractions()[span.eps + k];
+    for (int k = 0; k < span.count(); ++k)
+      if (span.x() + k < d.nx)
+        map[static_cast<std::size_t>(span.y) * d.nx + span.x() + k] +=
+            footprint.fractions()[span.eps + k];
   return map;
 }
 
@@ -99,7 +100,7 @@ TEST(Footprint, ArmsPointFromTheImageToTheCell) {
   footprint.update(disc, d);
   double area = 0.0;
   for (const auto& span : footprint.spans())
-    for (int k = 0; k < span.count; ++k) {
+    for (int k = 0; k < span.count(); ++k) {
       if (footprint.fractions()[span.eps + k] == 0.0) continue;
       EXPECT_LT(std::hypot(span.arm_x + k, span.arm_y), 3.0 + 0.75);
       area += footprint.fractions()[span.eps + k];
@@ -114,7 +115,7 @@ TEST(Footprint, TheCoreIsWholeAndDeep) {
   footprint.update(disc, d);
   int core = 0;
   for (const auto& span : footprint.spans())
-    for (int k = 0; k < span.count; ++k) {
+    for (int k = 0; k < span.count(); ++k) {
       const double distance = std::hypot(span.arm_x + k, span.arm_y);
       const bool in_core = k >= span.core_begin && k < span.core_end;
       EXPECT_EQ(in_core, distance < 9.6 - kCoreDepth) << distance;
