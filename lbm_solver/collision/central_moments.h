@@ -13,6 +13,7 @@ namespace lbm {
 template <class Turbulence, class Force>
 class CentralMoments {
  public:
+  static constexpr bool constant_rates = false;  ///< see TwoRates
   explicit CentralMoments(const CollisionParameters& p)
       : turbulence_(p), force_(p), parameters_(p) {}
 

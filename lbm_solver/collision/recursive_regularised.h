@@ -14,6 +14,7 @@ namespace lbm {
 template <class Turbulence, class Force>
 class RecursiveRegularised {
  public:
+  static constexpr bool constant_rates = false;  ///< see TwoRates
   explicit RecursiveRegularised(const CollisionParameters& p) : turbulence_(p), force_(p) {}
 
   template <class V>

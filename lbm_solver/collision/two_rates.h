@@ -40,6 +40,11 @@ class TwoRates {
         even_rate_(1.0 / p.tau),
         odd_rate_(1.0 / odd_rule_.odd_tau(p.tau)) {}
 
+  /// The rates are the same in every cell, and nothing is added to the relaxation.
+  static constexpr bool constant_rates = !Turbulence::on && !Force::on;
+  double even_rate() const { return even_rate_; }
+  double odd_rate() const { return odd_rate_; }
+
   template <class V>
   [[gnu::always_inline]] void operator()(V (&f)[D2Q9::Q]) const {
     const Moments<V> m = moments(f);

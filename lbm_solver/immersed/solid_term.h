@@ -99,13 +99,27 @@ class CoveredCollision {
   template <class V, class Collision>
   [[gnu::always_inline]] static Force<V> apply(V (&f)[D2Q9::Q], const Collision& collide, V weight,
                                                const Layer<V>& layer, V us, V vs) {
-    V fluid[D2Q9::Q];
-    unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
-    collide(fluid);
     const Moments<V> m = moments(f);
     const V rho = m.drho + V(1.0), inverse = V(1.0) / rho;
     const V ux = m.jx * inverse, uy = m.jy * inverse;
     const Equilibrium<V> eq(m.drho, ux, uy), solid(m.drho, us, vs);
+    if constexpr (Collision::constant_rates)
+      relax(f, collide, weight, layer, eq, solid);
+    else
+      blend(f, collide, weight, layer, eq, solid);
+    const V strength = Term::momentum_factor(layer) * weight * rho;
+    return {strength * (ux - us), strength * (uy - vs)};
+  }
+
+ private:
+  /// Any operator: its result and the solid's, weighted.
+  template <class V, class Collision>
+  [[gnu::always_inline]] static void blend(V (&f)[D2Q9::Q], const Collision& collide,
+                                           const V& weight, const Layer<V>& layer,
+                                           const Equilibrium<V>& eq, const Equilibrium<V>& solid) {
+    V fluid[D2Q9::Q];
+    unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
+    collide(fluid);
     const V rest = Term::rest(f[0], eq.rest(), solid.rest(), layer);
     f[0] = fluid[0] + weight * (f[0] - fluid[0] + rest);
     unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
@@ -115,8 +129,28 @@ class CoveredCollision {
       f[i] = fluid[i] + weight * (f[i] - fluid[i] + s.even + s.odd);
       f[i + 1] = fluid[i + 1] + weight * (f[i + 1] - fluid[i + 1] + s.even - s.odd);
     });
-    const V strength = Term::momentum_factor(layer) * weight * rho;
-    return {strength * (ux - us), strength * (uy - vs)};
+  }
+
+  /// The same for two constant rates, where the fluid's part is a relaxation with (1-B) times its
+  /// rates.
+  template <class V, class Collision>
+  [[gnu::always_inline]] static void relax(V (&f)[D2Q9::Q], const Collision& collide,
+                                           const V& weight, const Layer<V>& layer,
+                                           const Equilibrium<V>& eq, const Equilibrium<V>& solid) {
+    const V even_rate = (V(1.0) - weight) * V(collide.even_rate());
+    const V odd_rate = (V(1.0) - weight) * V(collide.odd_rate());
+    f[0] +=
+        even_rate * (eq.rest() - f[0]) + weight * Term::rest(f[0], eq.rest(), solid.rest(), layer);
+    unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
+      constexpr int i = 2 * p + 1;
+      const auto e = eq.template pair<i>();
+      const Halves<V> here{V(0.5) * (f[i] + f[i + 1]), V(0.5) * (f[i] - f[i + 1])};
+      const Halves<V> s = Term::pair(here, e, solid.template pair<i>(), layer);
+      const V even_gain = even_rate * (e.even - here.even) + weight * s.even;
+      const V odd_gain = odd_rate * (e.odd - here.odd) + weight * s.odd;
+      f[i] += even_gain + odd_gain;
+      f[i + 1] += even_gain - odd_gain;
+    });
   }
 };
 
