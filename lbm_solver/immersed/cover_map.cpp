@@ -36,11 +36,11 @@ void CoverMap::update(std::span<const Disc> discs) {
     moved = footprints_[d].update(discs[d], domain_) || moved;
   if (moved) place_blocks();
   for (Block& b : blocks_) {
-    b.eps.fill(0.0);
     b.us.fill(0.0);
     b.vs.fill(0.0);
-    b.memory.fill(1.0);
+    b.layer.fill(0.0);
   }
+  for (Share& s : shares_) s.eps.fill(0.0);
   for (std::size_t d = 0; d < discs.size(); ++d) add(discs_[d], footprints_[d]);
   finish();
   for (const Wall& wall : walls_) add(wall);
@@ -55,11 +55,13 @@ void CoverMap::add_wall(int x0, int y0, int x1, int y1) {
 void CoverMap::add(const Wall& wall) {
   for (int y = wall.y0; y < wall.y1; ++y)
     for (int x = wall.x0; x < wall.x1; ++x) {
-      Block& b = *block(y, x / kPackWidth);
+      const std::int32_t index = record(y, x / kPackWidth);
+      Block& b = blocks_[index];
+      Share& s = shares_[index];
       const int lane = x % kPackWidth;
-      b.eps[lane] += 1.0;
-      b.per_eps[lane] = 1.0 / b.eps[lane];
-      b.weight[lane] = b.surface[lane] = b.memory[lane] = 1.0;
+      s.eps[lane] += 1.0;
+      s.per_eps[lane] = 1.0 / s.eps[lane];
+      b.weight[lane] = b.layer[lane] = 1.0;
       b.us[lane] = b.vs[lane] = 0.0;
     }
 }
@@ -81,6 +83,7 @@ void CoverMap::place_blocks() {
   for (std::int32_t& index : index_)
     if (index >= 0) index = records++;
   blocks_.resize(records);
+  shares_.resize(records);
 }
 
 void CoverMap::add(const Disc& disc, const Footprint& footprint) {
@@ -88,28 +91,31 @@ void CoverMap::add(const Disc& disc, const Footprint& footprint) {
   for (const auto& span : footprint.spans()) {
     const Pack u(disc.velocity.x() - disc.spin * span.arm_y);
     for (int k = 0; k < span.blocks; ++k) {
-      Block& b = *block(span.y, span.block + k);
+      const std::int32_t index = record(span.y, span.block + k);
+      Block& b = blocks_[index];
+      Lanes& sum = shares_[index].eps;
       const Pack eps = load<Pack>(&footprint.fractions()[span.eps + k * kPackWidth]);
       const Pack arm_x = Pack(span.arm_x + k * kPackWidth) + lanes;
-      store(b.eps.data(), pack(b.eps) + eps);
+      store(sum.data(), pack(sum) + eps);
       store(b.us.data(), pack(b.us) + eps * u);
       store(b.vs.data(), pack(b.vs) + eps * (Pack(disc.velocity.y()) + Pack(disc.spin) * arm_x));
     }
     const int first = span.x();
     for (int x = first + span.core_begin; x < first + span.core_end; ++x)
-      block(span.y, x / kPackWidth)->memory[x % kPackWidth] = 0.0;
+      block(span.y, x / kPackWidth)->layer[x % kPackWidth] = -1.0;
   }
 }
 
 void CoverMap::finish() {
-  for (Block& b : blocks_)
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
     for (int lane = 0; lane < kPackWidth; ++lane) {
-      const double scale = b.eps[lane] > 0.0 ? 1.0 / b.eps[lane] : 0.0;
-      b.per_eps[lane] = scale;
+      Block& b = blocks_[i];
+      const double eps = shares_[i].eps[lane], scale = eps > 0.0 ? 1.0 / eps : 0.0;
+      shares_[i].per_eps[lane] = scale;
       b.us[lane] *= scale;
       b.vs[lane] *= scale;
-      b.weight[lane] = immersed_weight(b.eps[lane], tau_);
-      b.surface[lane] = b.eps[lane] < kWhole ? 1.0 : 0.0;
+      b.weight[lane] = immersed_weight(eps, tau_);
+      if (eps < kWhole) b.layer[lane] = 1.0;
     }
 }
 
@@ -120,9 +126,10 @@ std::vector<DiscLoad> CoverMap::loads() const {
     Pack fx(0.0), fy(0.0), torque(0.0);
     for (const auto& span : footprints_[d].spans())
       for (int k = 0; k < span.blocks; ++k) {
-        const Block& b = *block(span.y, span.block + k);
+        const std::int32_t index = record(span.y, span.block + k);
+        const Block& b = blocks_[index];
         const Pack eps = load<Pack>(&footprints_[d].fractions()[span.eps + k * kPackWidth]);
-        const Pack part = eps * pack(b.per_eps);
+        const Pack part = eps * pack(shares_[index].per_eps);
         const Pack x = part * pack(b.fx), y = part * pack(b.fy);
         fx += x;
         fy += y;
@@ -135,12 +142,12 @@ std::vector<DiscLoad> CoverMap::loads() const {
 }
 
 double CoverMap::solid_fraction(int x, int y) const {
-  const Block* b = block(y, x / kPackWidth);
-  return b ? b->eps[x % kPackWidth] : 0.0;
+  const std::int32_t index = record(y, x / kPackWidth);
+  return index < 0 ? 0.0 : shares_[index].eps[x % kPackWidth];
 }
 
 std::size_t CoverMap::bytes() const {
-  return index_.size() * sizeof index_[0] + blocks_.size() * sizeof(Block);
+  return index_.size() * sizeof index_[0] + blocks_.size() * (sizeof(Block) + sizeof(Share));
 }
 
 }  // namespace lbm

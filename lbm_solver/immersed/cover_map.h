@@ -15,15 +15,20 @@ namespace lbm {
 /// record is pure fluid and is swept without asking further.
 class CoverMap {
  public:
-  /// What the collision of one block needs, and the force it leaves behind, lane by lane.
+  using Lanes = std::array<double, kPackWidth>;
+
+  /// What the collision of one block needs, and the force it leaves behind. The sweep reads and
+  /// writes nothing else of the map.
   struct alignas(64) Block {
-    std::array<double, kPackWidth> eps;      ///< Σ ε over the solids in the cell
-    std::array<double, kPackWidth> per_eps;  ///< 1 / Σ ε, 0 where nothing covers the cell
-    std::array<double, kPackWidth> weight;   ///< B
-    std::array<double, kPackWidth> surface;  ///< 1 where Σ ε < 1, else 0
-    std::array<double, kPackWidth> memory;   ///< 0 in the core of a solid, else 1
-    std::array<double, kPackWidth> us, vs;   ///< solid velocity, ε-weighted mean
-    std::array<double, kPackWidth> fx, fy;   ///< force on the solids of the cell
+    Lanes weight;  ///< B
+    Lanes layer;   ///< 1 where Σ ε < 1, 0 below the surface, -1 in the core of a solid
+    Lanes us, vs;  ///< solid velocity, ε-weighted mean
+    Lanes fx, fy;  ///< force on the solids of the cell
+  };
+  /// How the solids in a cell share it; beside the sweep's records, same numbers.
+  struct alignas(64) Share {
+    Lanes eps;      ///< Σ ε over the solids in the cell
+    Lanes per_eps;  ///< 1 / Σ ε, 0 where nothing covers the cell
   };
 
   CoverMap(const Domain& domain, double tau);
@@ -42,6 +47,10 @@ class CoverMap {
     return index < 0 ? nullptr : &blocks_[index];
   }
   const Block* block(int y, int b) const { return const_cast<CoverMap*>(this)->block(y, b); }
+  /// Record of a block that is known to have one.
+  std::int32_t record(int y, int b) const {
+    return index_[static_cast<std::size_t>(y) * blocks_per_row_ + b];
+  }
   int blocks_per_row() const { return blocks_per_row_; }
   /// First block of row y from b on that has a record; blocks_per_row() where none has.
   int next_covered(int y, int b) const {
@@ -74,6 +83,7 @@ class CoverMap {
   int blocks_per_row_;
   std::vector<std::int32_t> index_;  // [row][block], -1: pure fluid
   std::vector<Block> blocks_;
+  std::vector<Share> shares_;
   std::vector<Wall> walls_;
   bool walls_changed_ = false;
   std::vector<Disc> discs_;

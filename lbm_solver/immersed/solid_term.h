@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <algorithm>
+
 #include "lbm_solver/collision/equilibrium.h"
 
 namespace lbm {
@@ -10,6 +12,13 @@ template <class V>
 struct Layer {
   V surface;  ///< 1 where the solid covers the cell in part, 0 where it covers it whole
   V memory;   ///< 0 in the core, more than a few cells below the surface, else 1
+
+  /// @param layer  1 surface, 0 whole, -1 core
+  [[gnu::always_inline]] static Layer of(const V& layer) {
+    using std::max;
+    using std::min;
+    return {max(layer, V(0.0)), V(1.0) + min(layer, V(0.0))};
+  }
 };
 
 /// The collision Ω^s that drives a covered cell towards the solid's velocity u_s, as even and odd

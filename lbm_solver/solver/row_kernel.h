@@ -76,10 +76,9 @@ class RowKernel final : public Kernel {
                                       int lane) const {
     V f[D2Q9::Q];
     unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { f[q] = load<V>(row.in[q] + x); });
-    const auto force =
-        Covered::apply(f, collide_, load<V>(&block.weight[lane]),
-                       Layer<V>{load<V>(&block.surface[lane]), load<V>(&block.memory[lane])},
-                       load<V>(&block.us[lane]), load<V>(&block.vs[lane]));
+    const auto force = Covered::apply(f, collide_, load<V>(&block.weight[lane]),
+                                      Layer<V>::of(load<V>(&block.layer[lane])),
+                                      load<V>(&block.us[lane]), load<V>(&block.vs[lane]));
     unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { store(row.out[q] + x, f[q]); });
     store(&block.fx[lane], force.x);
     store(&block.fy[lane], force.y);

@@ -47,10 +47,10 @@ void copy_cover(const CoverMap& cover, const Domain& d, test::NaiveLattice& naiv
       const auto* block = cover.block(y, x / kPackWidth);
       const int lane = x % kPackWidth;
       naive.cover(x, y) = {};
-      if (block && block->eps[lane] > 0.0)
+      if (block && block->weight[lane] > 0.0)
         naive.cover(x, y) = {block->weight[lane],
-                             block->surface[lane] == 0.0,
-                             block->memory[lane] == 0.0,
+                             block->layer[lane] <= 0.0,
+                             block->layer[lane] < 0.0,
                              {block->us[lane], block->vs[lane]}};
     }
 }
