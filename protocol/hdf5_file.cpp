@@ -78,12 +78,24 @@ std::string text_attribute(hid_t object, const std::string& name) {
   return text;
 }
 
-std::int64_t integer_attribute(hid_t object, const std::string& name) {
+namespace {
+
+template <class T>
+T number_attribute(hid_t object, const std::string& name, hid_t type) {
   const Handle attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose,
                          "read attribute " + name);
-  std::int64_t value = 0;
-  check(H5Aread(attribute, H5T_NATIVE_INT64, &value), "read attribute " + name);
+  T value{};
+  check(H5Aread(attribute, type, &value), "read attribute " + name);
   return value;
+}
+
+}  // namespace
+
+double real_attribute(hid_t object, const std::string& name) {
+  return number_attribute<double>(object, name, H5T_NATIVE_DOUBLE);
+}
+std::int64_t integer_attribute(hid_t object, const std::string& name) {
+  return number_attribute<std::int64_t>(object, name, H5T_NATIVE_INT64);
 }
 
 }  // namespace protocol::hdf5

@@ -47,6 +47,7 @@ void set_attribute(hid_t object, const std::string& name, const std::string& tex
 void set_attribute(hid_t object, const std::string& name, double value);
 void set_attribute(hid_t object, const std::string& name, std::int64_t value);
 std::string text_attribute(hid_t object, const std::string& name);
+double real_attribute(hid_t object, const std::string& name);
 std::int64_t integer_attribute(hid_t object, const std::string& name);
 
 }  // namespace protocol::hdf5

@@ -54,6 +54,7 @@ def arguments():
     p.add_argument("--threads", type=int, default=1, metavar="T", help="of the fluid")
     p.add_argument("--until", type=float, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
+    p.add_argument("--restart", action="store_true", help="go on from the checkpoint in --out")
     p.add_argument("--out", metavar="DIR", help="default: out/SCENE[-SET][-VARIANT]")
     p.add_argument("--no-study", action="store_true", help="leave out the scene's comparison runs")
     return p.parse_args()
@@ -99,6 +100,7 @@ def command(args, out):
     fluid += ["--set", args.set] + (["--variant", args.variant] if args.variant else [])
     fluid += ["--until", repr(args.until)] if args.until else []
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
+    fluid += ["--restart"] if args.restart else []
     script = str(CASES / args.scene / "in.liggghts")
     first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
     if not os.path.exists(script):
@@ -110,8 +112,9 @@ def command(args, out):
 def run_job(args, out):
     if shutil.which("mpirun") is None:
         fail("mpirun not found; run tools/install")
-    shutil.rmtree(out, ignore_errors=True)
-    out.mkdir(parents=True)
+    if not args.restart:
+        shutil.rmtree(out, ignore_errors=True)
+    out.mkdir(parents=True, exist_ok=True)
     line = command(args, out)
     env = environment(args.fluid_ranks * args.threads + args.solid_ranks)
     added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)

@@ -105,6 +105,7 @@ struct Scene {
   std::optional<ParticleScene> particles;
   std::optional<CouplingScene> coupling;  ///< absent: a fluid alone
   double end_time = 0.0;                  ///< [s]
+  double checkpoint_every = 0.0;          ///< [s], without a solid; 0: never
   double steady_below = 0.0;              ///< end earlier where the velocity changes less; 0: never
   std::vector<BoundaryScene> boundaries;
   std::vector<ObstacleScene> obstacles;

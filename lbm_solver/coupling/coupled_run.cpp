@@ -4,6 +4,8 @@
 #include <cmath>
 #include <ctime>
 
+#include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/checkpoint.h"
 #include "protocol/program.h"
 
 namespace lbm {
@@ -88,20 +90,59 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
   return summary;
 }
 
+namespace {
+
+/// Grid and steps that a checkpoint belongs to.
+std::vector<double> identity(const Plan& plan) {
+  const auto& p = plan.kernel.parameters;
+  return {static_cast<double>(plan.domain.nx), static_cast<double>(plan.domain.ny), plan.units.dt,
+          p.tau};
+}
+
+void save(const std::string& path, const Plan& plan, const Fluid& fluid,
+          const Observers& observers) {
+  State state = fluid.state();
+  state["observers"] = observers.state();
+  state["identity"] = identity(plan);
+  write_checkpoint(path, state);
+}
+
+State load(const std::string& path, const Plan& plan) {
+  State state = read_checkpoint(path);
+  if (state["identity"] != identity(plan))
+    throw InputError(path, "was written by a run with another grid or step",
+                     "restart with the same scene and overlays");
+  return state;
+}
+
+}  // namespace
+
 Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& options, Log& log) {
+  const std::string checkpoint = options.out + "/checkpoint.h5";
   Fluid fluid = make_fluid(scene, plan);
+  State state;
+  if (options.restart) {
+    state = load(checkpoint, plan);
+    fluid.restore(state);
+  }
   const bool loads = !obstacle_discs(scene, plan).empty();
-  Observers observers(scene, plan, options.out, log);
+  Observers observers(scene, plan, options.out, log, fluid.steps());
+  if (options.restart) {
+    observers.restore(state["observers"]);
+    log.say(fluid.steps(), "restart", "goes on from {}", checkpoint);
+  }
   const std::int64_t end = last_interval(plan, options);
+  const std::int64_t every = static_cast<std::int64_t>(scene.checkpoint_every / plan.interval());
   std::string ending = "complete";
   PartClock clock;
-  std::int64_t step = 0;
+  std::int64_t step = fluid.steps();
   for (; step < end; ++step) {
     fluid.step();
     clock.charge("sweep");
     if (loads) observers.add_loads(fluid.loads());
     clock.charge("loads");
     observers.after_interval(step, fluid, nullptr);
+    if (every > 0 && fluid.steps() % every == 0) save(checkpoint, plan, fluid, observers);
     clock.charge("output");
     protocol::throw_if_signalled();
     if (observers.steady()) {

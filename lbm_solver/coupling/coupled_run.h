@@ -12,6 +12,7 @@ namespace lbm {
 struct RunOptions {
   std::string out = "out";                ///< folder of all output; created where missing
   std::optional<double> until;            ///< stop at this time [s] instead of the scene's end
+  bool restart = false;                   ///< go on from the checkpoint in `out`
   std::string set = "resolved", variant;  ///< names for the summary
 };
 

@@ -35,19 +35,23 @@ double PartClock::total() const {
   return std::chrono::duration<double>(last_ - start_).count();
 }
 
-Observers::Observers(const Scene& scene, const Plan& plan, const std::string& folder, Log& log)
+Observers::Observers(const Scene& scene, const Plan& plan, const std::string& folder, Log& log,
+                     std::int64_t first)
     : scene_(scene),
       plan_(plan),
       log_(log),
       guard_every_(std::max<std::int64_t>(1, kGuardSteps / plan.fluid_steps)),
       start_(std::chrono::steady_clock::now()),
       last_progress_(start_) {
+  const double keep =
+      (static_cast<double>(first) - 0.5) * plan.interval();  // lines before this time
+  intervals_done_ = first;
   if (scene.coupling) probes_.emplace(folder);
   if (!scene.output.points.empty())
-    points_.emplace(folder + "/points.csv", "time,x,y,pressure,ux,uy");
+    points_.emplace(folder + "/points.csv", "time,x,y,pressure,ux,uy", keep);
   if (!obstacle_discs(scene, plan).empty())
-    obstacles_.emplace(folder + "/obstacles.csv", "time,obstacle,fx,fy,torque");
-  if (scene.output.fields_every > 0.0) fields_.emplace(folder, plan.units);
+    obstacles_.emplace(folder + "/obstacles.csv", "time,obstacle,fx,fy,torque", keep);
+  if (scene.output.fields_every > 0.0) fields_.emplace(folder, plan.units, keep);
 }
 
 void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles) {
@@ -75,6 +79,26 @@ void Observers::at_end(std::int64_t interval, Fluid& fluid, const Particles* par
   guard(interval, fluid, particles);
   write_probes(time, fluid, particles, true);
   if (fields_) write_fields(time, fluid, particles);
+}
+
+std::vector<double> Observers::state() const {
+  std::vector<double> s{next_probe_,        next_field_,  max_speed_,
+                        first_mass_excess_, mass_excess_, static_cast<double>(obstacle_steps_)};
+  for (const DiscLoad& sum : obstacle_sums_)
+    s.insert(s.end(), {sum.force.x(), sum.force.y(), sum.torque});
+  return s;
+}
+
+void Observers::restore(const std::vector<double>& s) {
+  next_probe_ = s.at(0);
+  next_field_ = s.at(1);
+  max_speed_ = s.at(2);
+  first_mass_excess_ = s.at(3);
+  mass_excess_ = s.at(4);
+  obstacle_steps_ = static_cast<int>(s.at(5));
+  obstacle_sums_.clear();
+  for (std::size_t i = 6; i + 2 < s.size(); i += 3)
+    obstacle_sums_.push_back({{s[i], s[i + 1]}, s[i + 2]});
 }
 
 void Observers::add_loads(std::span<const DiscLoad> loads) {

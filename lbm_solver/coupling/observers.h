@@ -32,7 +32,13 @@ class PartClock {
 /// Everything that watches a run without changing it: guard, probes, fields, progress, summary.
 class Observers {
  public:
-  Observers(const Scene& scene, const Plan& plan, const std::string& folder, Log& log);
+  /// @param first  interval at which the run begins or goes on; earlier output is kept
+  Observers(const Scene& scene, const Plan& plan, const std::string& folder, Log& log,
+            std::int64_t first = 0);
+
+  /// What a checkpoint must keep of the observers.
+  std::vector<double> state() const;
+  void restore(const std::vector<double>& state);
 
   /// After an interval's loads are known. @param particles  null for a fluid alone
   /// @throws NumericsError

@@ -29,6 +29,7 @@ class EsotericPull {
   Side x() const { return x_; }
   Side y() const { return y_; }
   bool odd() const { return odd_; }
+  void set_odd(bool odd) { odd_ = odd; }
 
   /// Ends a step: what was written is now what arrives.
   void advance() { odd_ = !odd_; }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
 
 #include "lbm_solver/lattice/d2q9.h"
 
@@ -26,6 +27,10 @@ class Populations {
   /// Start of row y (-1 … ny) of direction q; valid for x = -1 … nx.
   double* row(int q, int y) { return first_ + q * plane_ + (y + 1) * stride_; }
   const double* row(int q, int y) const { return first_ + q * plane_ + (y + 1) * stride_; }
+
+  /// The whole memory, padding included: two fields of the same extent have the same layout.
+  std::span<double> raw() { return {memory_.get(), size_}; }
+  std::span<const double> raw() const { return {memory_.get(), size_}; }
 
   std::size_t bytes() const { return size_ * sizeof(double); }
 

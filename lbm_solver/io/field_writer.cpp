@@ -45,12 +45,39 @@ std::string group_name(std::size_t index) {
 
 }  // namespace
 
-FieldWriter::FieldWriter(const std::string& folder, const Units& units)
+FieldWriter::FieldWriter(const std::string& folder, const Units& units, double keep_until)
     : folder_(folder), units_(units) {
+  if (keep_until > 0.0) {
+    keep_frames(keep_until);
+    return;
+  }
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Create);
   protocol::hdf5::set_attribute(file, "cell", units.dx);
   protocol::hdf5::set_attribute(file, "origin_x", units.origin.x());
   protocol::hdf5::set_attribute(file, "origin_y", units.origin.y());
+}
+
+/// Finds the frames of the run before; those from `until` on are written again.
+void FieldWriter::keep_frames(double until) {
+  const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Append);
+  for (;;) {
+    const std::string name = group_name(entries_.size());
+    if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) return;
+    const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
+    const double time = protocol::hdf5::real_attribute(group, "time");
+    if (time >= until) break;
+    const Handle set(H5Dopen2(group, "pressure", H5P_DEFAULT), H5Dclose, "open pressure");
+    const Handle space(H5Dget_space(set), H5Sclose, "read a space");
+    hsize_t shape[2];
+    check(H5Sget_simple_extent_dims(space, shape, nullptr), "read a size");
+    entries_.push_back({time, static_cast<int>(shape[1]), static_cast<int>(shape[0]),
+                        H5Lexists(group, "solid_fraction", H5P_DEFAULT) > 0});
+  }
+  for (std::size_t i = entries_.size();; ++i) {
+    const std::string name = group_name(i);
+    if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) return;
+    check(H5Ldelete(file, name.c_str(), H5P_DEFAULT), "drop " + name);
+  }
 }
 
 void FieldWriter::write(const FieldFrame& f) {

@@ -23,12 +23,14 @@ struct FieldFrame {
 /// is closed after every frame: a kill loses at most the frame in progress.
 class FieldWriter {
  public:
-  /// @param folder  must exist
-  FieldWriter(const std::string& folder, const Units& units);
+  /// @param folder      must exist
+  /// @param keep_until  a run that goes on keeps the frames before this time
+  FieldWriter(const std::string& folder, const Units& units, double keep_until = 0.0);
   void write(const FieldFrame& frame);
 
  private:
   void write_xdmf() const;
+  void keep_frames(double until);
   struct Entry {
     double time;
     int nx, ny;

@@ -3,16 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <fstream>
 #include <limits>
+#include <vector>
 
 #include "lbm_solver/base/errors.h"
 
 namespace lbm {
 
-CsvWriter::CsvWriter(const std::string& path, const std::string& columns)
-    : file_(std::fopen(path.c_str(), "w")) {
+CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double keep_until) {
+  std::vector<std::string> kept;
+  if (keep_until > 0.0) {
+    std::ifstream before(path);
+    std::string line;
+    std::getline(before, line);  // the columns
+    while (std::getline(before, line))
+      if (std::strtod(line.c_str(), nullptr) < keep_until) kept.push_back(line);
+  }
+  file_.reset(std::fopen(path.c_str(), "w"));
   if (!file_) throw InputError(path, "cannot be written", "choose another --out");
   fmt::print(file_.get(), "{}\n", columns);
+  for (const std::string& line : kept) fmt::print(file_.get(), "{}\n", line);
 }
 
 void CsvWriter::row(std::initializer_list<double> values) {

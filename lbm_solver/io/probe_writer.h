@@ -14,9 +14,10 @@ namespace lbm {
 /// A table of numbers that grows line by line and is complete on disk after each.
 class CsvWriter {
  public:
-  /// @param path     overwritten
-  /// @param columns  first line
-  CsvWriter(const std::string& path, const std::string& columns);
+  /// @param path        overwritten, but for the lines kept
+  /// @param columns     first line; the first column is the time
+  /// @param keep_until  a run that goes on keeps the lines before this time
+  CsvWriter(const std::string& path, const std::string& columns, double keep_until = 0.0);
   void row(std::initializer_list<double> values);
   void flush() { std::fflush(file_.get()); }
 

@@ -199,6 +199,10 @@ Scene read_scene(const std::vector<std::string>& files) {
   TableReader run = root.table("run");
   scene.end_time = run.number("end_time", Bounds::positive(), "s");
   scene.steady_below = run.number_or("steady_below", 0.0, Bounds::non_negative(), "");
+  scene.checkpoint_every = run.number_or("checkpoint_every", 0.0, Bounds::non_negative(), "s");
+  if (scene.coupling && scene.checkpoint_every > 0.0)
+    run.fail("checkpoint_every", "needs a fluid alone",
+             "leave it out: a checkpoint of both programs does not exist yet");
   run.finish();
   for (const TableReader& t : root.tables("boundary"))
     scene.boundaries.push_back(read_boundary(t, scene.box));

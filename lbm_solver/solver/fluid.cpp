@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <tuple>
 
 #include "lbm_solver/base/contracts.h"
@@ -106,6 +107,39 @@ Fluid::Extremes Fluid::extremes() {
   }
   e.max_speed = std::sqrt(largest);
   return e;
+}
+
+std::map<std::string, std::vector<double>> Fluid::state() const {
+  std::map<std::string, std::vector<double>> state;
+  state["populations"].assign(f_.raw().begin(), f_.raw().end());
+  state["clock"] = {static_cast<double>(steps_), stream_.odd() ? 1.0 : 0.0};
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    std::vector<double>& values = state["patch" + std::to_string(i)];
+    values = patches_[i]->memory();
+    values.push_back(patches_[i]->mass_in());
+  }
+  return state;
+}
+
+void Fluid::restore(const std::map<std::string, std::vector<double>>& state) {
+  const auto take = [&state](const std::string& name,
+                             std::size_t size) -> const std::vector<double>& {
+    const auto found = state.find(name);
+    if (found == state.end() || found->second.size() != size)
+      throw std::invalid_argument("'" + name + "' is missing or of another size");
+    return found->second;
+  };
+  const auto& populations = take("populations", f_.raw().size());
+  const auto& clock = take("clock", 2);
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    std::vector<double>& memory = patches_[i]->memory();
+    const auto& values = take("patch" + std::to_string(i), memory.size() + 1);
+    std::copy_n(values.begin(), memory.size(), memory.begin());
+    patches_[i]->restore_mass(values.back());
+  }
+  std::copy(populations.begin(), populations.end(), f_.raw().begin());
+  steps_ = static_cast<std::int64_t>(clock[0]);
+  stream_.set_odd(clock[1] != 0.0);
 }
 
 }  // namespace lbm

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -65,6 +66,12 @@ class Fluid {
 
   /// Density and velocity of a whole row. @param rho, ux, uy  [nx] each, overwritten
   void row(int y, std::span<double> rho, std::span<double> ux, std::span<double> uy);
+
+  /// Everything that the coming steps depend on, as named arrays; obstacles and boundaries must be
+  /// in place again before `restore`. @throws std::invalid_argument where the state is of another
+  /// fluid
+  std::map<std::string, std::vector<double>> state() const;
+  void restore(const std::map<std::string, std::vector<double>>& state);
 
   std::size_t bytes() const { return f_.bytes() + (cover_ ? cover_->bytes() : 0); }
 
