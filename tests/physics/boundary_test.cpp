@@ -109,8 +109,8 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
       stress += D2Q9::c[q][0] * D2Q9::c[q][1] * fluid.arriving(q, 2, ny / 2);
     stress -= c.rho * c.u.x() * c.u.y();
     const double nu = (tau - 0.5) / 3.0 + s_c * s_c * rate, total = 3.0 * nu + 0.5;
-    // TRT shows a layer at a moving lid when tau -> 1/2 (its odd rate is then 1/90): 0.9 % here, growing
-    // with the lid's speed; the cause is not known. The other operators keep to 0.1 %.
+    // TRT shows a layer at a moving lid when tau -> 1/2 (its odd rate is then 1/90): 0.9 % here,
+    // growing with the lid's speed; the cause is not known. The other operators keep to 0.1 %.
     EXPECT_NEAR(-(1.0 - 0.5 / total) * stress / (nu * rate), 1.0, collision == "trt" ? 1e-2 : 1e-3)
         << collision;
   }
