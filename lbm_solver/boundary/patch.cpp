@@ -87,8 +87,8 @@ void VelocityPatch::apply(Populations& f, const EsotericPull& stream, std::int64
   }
 }
 
-PressurePatch::PressurePatch(std::vector<Link> links, SideName side, double drho,
-                             const InTime& in_time)
+DensityPatch::DensityPatch(std::vector<Link> links, SideName side, double drho,
+                           const InTime& in_time)
     : Patch(std::move(links)),
       inward_x_(inward(side).x),
       inward_y_(inward(side).y),
@@ -96,54 +96,44 @@ PressurePatch::PressurePatch(std::vector<Link> links, SideName side, double drho
       in_time_(in_time) {}
 
 void PressurePatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
-  const double target = drho_ * in_time_.factor(step);
+  const double target = drho(step);
   for (const Link& link : links_) {
-    const Inner in = inner(f, stream, link.x + inward_x_, link.y + inward_y_);
+    const int x = link.x + inward_x_, y = link.y + inward_y_;
+    const Inner in = inner(f, stream, x, y);
     const double at_cell = (2.0 * target + in.drho) / 3.0;
     const double cu = D2Q9::c[link.q][0] * in.ux + D2Q9::c[link.q][1] * in.uy;
     const double per_density =
         D2Q9::w[link.q] * (1.0 + 3.0 * cu + square_terms(link.q, in.ux, in.uy));
     replace(stream.arriving(f, link.q, link.x, link.y),
-            stream.arriving(f, link.q, link.x + inward_x_, link.y + inward_y_) +
-                (at_cell - in.drho) * per_density);
+            stream.arriving(f, link.q, x, y) + (at_cell - in.drho) * per_density);
   }
 }
 
 OutflowPatch::OutflowPatch(std::vector<Link> links, SideName side, double drho, double relax)
-    : Patch(std::move(links)),
-      inward_x_(inward(side).x),
-      inward_y_(inward(side).y),
-      drho_(drho),
+    : DensityPatch(std::move(links), side, drho, InTime{}),
       relax_(relax),
       memory_(links_.size(), 0.0) {}
 
-void OutflowPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t) {
+void OutflowPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
+  const double target = drho(step);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
     const int x = link.x + inward_x_, y = link.y + inward_y_;
     const double carried =
         (memory_[i] + kCourant * stream.arriving(f, link.q, x, y)) / (1.0 + kCourant);
-    const double pull = relax_ * D2Q9::w[link.q] * (drho_ - inner(f, stream, x, y).drho);
+    const double pull = relax_ * D2Q9::w[link.q] * (target - inner(f, stream, x, y).drho);
     memory_[i] = carried + pull;
     replace(stream.arriving(f, link.q, link.x, link.y), memory_[i]);
   }
 }
 
-PressureJumpPatch::PressureJumpPatch(std::vector<Link> links, SideName side, double drho,
-                                     const InTime& in_time)
-    : Patch(std::move(links)),
-      inward_x_(inward(side).x),
-      inward_y_(inward(side).y),
-      drho_(drho),
-      in_time_(in_time) {}
-
 void PressureJumpPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
-  const double drho = drho_ * in_time_.factor(step);
+  const double jump = drho(step);
   for (const Link& link : links_) {
     const Inner in = inner(f, stream, link.x + inward_x_, link.y + inward_y_);
     double& population = stream.arriving(f, link.q, link.x, link.y);
     replace(population,
-            population + D2Q9::w[link.q] * drho * (1.0 + square_terms(link.q, in.ux, in.uy)));
+            population + D2Q9::w[link.q] * jump * (1.0 + square_terms(link.q, in.ux, in.uy)));
   }
 }
 

@@ -83,55 +83,59 @@ class VelocityPatch final : public Patch {
   InTime in_time_;
 };
 
+/// What the patches below share: a density on the side, and the next cell inward to take the rest
+/// from.
+class DensityPatch : public Patch {
+ protected:
+  /// @param drho  density deviation on the side
+  DensityPatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time);
+  double drho(std::int64_t step) const { return drho_ * in_time_.factor(step); }
+
+  int inward_x_, inward_y_;
+
+ private:
+  double drho_;
+  InTime in_time_;
+};
+
 /// A given pressure on the side: what arrives is what arrives at the next cell inward, with that
 /// cell's equilibrium density exchanged for the boundary's (non-equilibrium extrapolation
 /// [GuoZhengShi2002]):
 ///   f_q = f_q(inner) + f_q^eq(rho, u) - f_q^eq(rho_inner, u),   u of the next cell inward.
 /// The side lies half a cell beyond the boundary cell: rho = (2 rho_side + rho_inner)/3 there.
-class PressurePatch final : public Patch {
+class PressurePatch final : public DensityPatch {
  public:
-  /// @param drho  target density deviation
-  PressurePatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time);
+  PressurePatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time)
+      : DensityPatch(std::move(links), side, drho, in_time) {}
   void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
-
- private:
-  int inward_x_, inward_y_;
-  double drho_;
-  InTime in_time_;
 };
 
 /// An open end that lets sound and vortices out: what arrives is carried outward with the speed of
 /// sound,
 ///   ∂f_q/∂t + c_s ∂f_q/∂n = 0   (implicit upwind),
 /// while a weak pull brings the mean pressure to its target.
-class OutflowPatch final : public Patch {
+class OutflowPatch final : public DensityPatch {
  public:
-  /// @param drho   target density deviation
-  /// @param relax  part of the deviation from it that is taken away in a step, about c_s / box
+  /// @param relax  part of the deviation from drho that is taken away in a step, about c_s / box
   /// length
   OutflowPatch(std::vector<Link> links, SideName side, double drho, double relax);
   void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
   std::vector<double>& memory() override { return memory_; }
 
  private:
-  int inward_x_, inward_y_;
-  double drho_, relax_;
+  double relax_;
   std::vector<double> memory_;  // [link] what arrived in the step before
 };
 
 /// Pressure jump across a periodic pair of sides [after KimPitsch2007]: populations that enter
 /// through the low side gain w_q Δrho, those through the high side lose it. The momentum density is
 /// that of the other side, so that no mass is made.
-class PressureJumpPatch final : public Patch {
+class PressureJumpPatch final : public DensityPatch {
  public:
-  /// @param low  the patch is on the left or bottom side
-  PressureJumpPatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time);
+  /// @param drho  Δrho on the left or bottom side, -Δrho on the other
+  PressureJumpPatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time)
+      : DensityPatch(std::move(links), side, drho, in_time) {}
   void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
-
- private:
-  int inward_x_, inward_y_;
-  double drho_;
-  InTime in_time_;
 };
 
 }  // namespace lbm
