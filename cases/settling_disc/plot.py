@@ -21,10 +21,13 @@ def reynolds(run):
     return probe["time"], p["particle_density"] * p["diameter"] * -probe["vy"] / mu
 
 
-def judged(run):
+def judged(run, others):
     p, probe = run.parameters, run.probes()
-    results = [result("Re_max", reynolds(run)[1].max(), "1", RE_REFERENCE,
-                      "Glowinski et al. 2001, Wan and Turek 2006: 17.27 ... 17.42", RE_TOLERANCE)]
+    runs = [run] + [r for name, r in others.items() if "inertia" not in name]
+    results = [result(f"Re_max at D/Δx = {r.parameters['cells_per_diameter']:.0f}",
+                      reynolds(r)[1].max(), "1", RE_REFERENCE,
+                      "Glowinski et al. 2001, Wan and Turek 2006: 17.27 ... 17.42", RE_TOLERANCE)
+               for r in runs]
     if run.summary["physical_seconds"] > 0.95:
         radius = 0.5 * p["diameter"]
         results.append(result("height at rest", probe["y"][-1], "m", radius,
@@ -108,7 +111,7 @@ def fall_deficit(run, other, time=0.4):
 def main():
     run = Run(pathlib.Path(sys.argv[1]))
     others = studies(run)
-    run.write_results(judged(run))
+    run.write_results(judged(run, others))
     picture_field(run)
     picture_history(run, others)
     picture_resolution(run, others)

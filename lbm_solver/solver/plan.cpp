@@ -77,6 +77,14 @@ void check_particles(const Scene& s) {
   }
 }
 
+/// Length of the Reynolds number: the smallest particle, the first disc at rest, or the box.
+double reference_length(const Scene& s) {
+  if (s.particles) return s.particles->diameter.lo;
+  for (const auto& o : s.obstacles)
+    if (o.disc) return o.diameter;
+  return s.box.size.x();
+}
+
 /// Largest pressure difference that the boundaries impose [Pa].
 double largest_pressure(const Scene& s) {
   double lo = 0.0, hi = 0.0;
@@ -145,6 +153,11 @@ void judge_step(const Scene& s, Plan& plan) {
         fmt::format("Re_h = {:.3g} exceeds {}: forces are noisy with {}; take collision = \"auto\" "
                     "or a finer cell",
                     plan.reynolds_cell, kLimitReynoldsCell, plan.kernel.collision));
+  if (plan.kernel.collision == "trt" && plan.kernel.turbulence != "none")
+    plan.warnings.push_back(
+        "TRT with a turbulence model: its slow odd rate adds to the eddy viscosity where u ∇u is "
+        "large; "
+        "take collision = \"auto\"");
   if (plan.cells_per_diameter > 0.0 && plan.cells_per_diameter < kFewCells)
     plan.warnings.push_back(fmt::format("D/Δx = {:.3g} is below {}: no accuracy is claimed",
                                         plan.cells_per_diameter, kFewCells));
@@ -154,15 +167,17 @@ void choose_kernel(const Scene& s, Plan& plan) {
   const NumericsScene& n = s.numerics;
   const double dx = plan.units.dx, dt = plan.units.dt;
   plan.reynolds_cell = s.fluid.velocity_scale * dx / s.fluid.viscosity;
-  const bool calm = plan.reynolds_cell <= kLimitReynoldsCell;
+  const bool calm = plan.reynolds_cell <= kLimitReynoldsCell, les = n.smagorinsky > 0.0;
   KernelChoice& k = plan.kernel;
   k.collision = n.collision;
   if (n.collision == "auto") {
-    k.collision = calm ? "trt" : "central_moment";
+    k.collision = calm && !les ? "trt" : "central_moment";
     plan.collision_reason =
-        fmt::format("auto: Re_h = {:.3g} is {} {}, where {}", plan.reynolds_cell,
-                    calm ? "at most" : "above", kLimitReynoldsCell,
-                    calm ? "TRT is most accurate" : "TRT with fixed Λ gets noisy or unstable");
+        les ? "auto: the slow odd rate of TRT would disturb the turbulence model"
+            : fmt::format(
+                  "auto: Re_h = {:.3g} is {} {}, where {}", plan.reynolds_cell,
+                  calm ? "at most" : "above", kLimitReynoldsCell,
+                  calm ? "TRT is most accurate" : "TRT with fixed Λ gets noisy or unstable");
   }
   k.turbulence = n.smagorinsky > 0.0 ? "smagorinsky" : "none";
   k.force = s.fluid.body_force.norm() > 0.0;
@@ -208,8 +223,7 @@ Plan make_plan(const Scene& s) {
   plan.domain = {cells_along(s, s.box.size.x(), dx, "x"), cells_along(s, s.box.size.y(), dx, "y"),
                  to_side(s.box.x), to_side(s.box.y)};
   plan.units = {dx, 0.0, s.fluid.density, s.box.depth, s.box.origin};
-  const double length = s.particles ? s.particles->diameter.lo : s.box.size.x();
-  plan.reynolds = s.fluid.velocity_scale * length / s.fluid.viscosity;
+  plan.reynolds = s.fluid.velocity_scale * reference_length(s) / s.fluid.viscosity;
   if (s.particles) {
     check_particles(s);
     plan.cells_per_diameter = s.particles->diameter.lo / dx;
