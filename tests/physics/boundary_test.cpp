@@ -95,8 +95,10 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
   const int nx = 5, ny = 16;
   const double tau = 0.502, s_c = 0.3, u = 0.02, rate = u / ny;
   for (const std::string& collision : known_collisions()) {
+    // Λ = 3/16 would make TRT's odd rate 1/94 here: its odd modes then carry tau^- u ∇u into Q_xx,
+    // which the model takes for strain (0.9 % in the stress at this speed, 5 % at u = 0.1).
     const KernelChoice les{
-        collision, "smagorinsky", false, "none", {.tau = tau, .smagorinsky = s_c}};
+        collision, "smagorinsky", false, "none", {.tau = tau, .magic = 1e-3, .smagorinsky = s_c}};
     Fluid fluid({nx, ny, Side::Periodic, Side::Wall}, les);
     for (int y = 0; y < ny; ++y)
       for (int x = 0; x < nx; ++x) fluid.set_equilibrium(x, y, 1.0, {rate * (y + 0.5), 0.0});
@@ -109,10 +111,7 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
       stress += D2Q9::c[q][0] * D2Q9::c[q][1] * fluid.arriving(q, 2, ny / 2);
     stress -= c.rho * c.u.x() * c.u.y();
     const double nu = (tau - 0.5) / 3.0 + s_c * s_c * rate, total = 3.0 * nu + 0.5;
-    // TRT shows a layer at a moving lid when tau -> 1/2 (its odd rate is then 1/90): 0.9 % here,
-    // growing with the lid's speed; the cause is not known. The other operators keep to 0.1 %.
-    EXPECT_NEAR(-(1.0 - 0.5 / total) * stress / (nu * rate), 1.0, collision == "trt" ? 1e-2 : 1e-3)
-        << collision;
+    EXPECT_NEAR(-(1.0 - 0.5 / total) * stress / (nu * rate), 1.0, 1e-3) << collision;
   }
 }
 
