@@ -19,10 +19,10 @@ struct Plan {
   int fluid_steps = 1;         ///< a coupling interval
   int substeps = 1;            ///< solid steps a coupling interval
 
-  double lattice_speed = 0.0;       ///< C = dx/dt [m/s]
-  double u_over_c = 0.0;            ///< velocity scale / C, the papers' Mach number
-  double reynolds = 0.0;            ///< with the smallest particle, a disc at rest, or the box's width
-  double reynolds_cell = 0.0;       ///< Re_h = u dx / nu
+  double lattice_speed = 0.0;  ///< C = dx/dt [m/s]
+  double u_over_c = 0.0;       ///< velocity scale / C, the papers' Mach number
+  double reynolds = 0.0;       ///< with the smallest particle, a disc at rest, or the box's width
+  double reynolds_cell = 0.0;  ///< Re_h = u dx / nu
   double cells_per_diameter = 0.0;  ///< smallest particle; 0 without particles
   std::string collision_reason;     ///< why auto took what it took; empty where it was given
   std::string step_limit;           ///< what chose the fluid step
