@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "lbm_solver/base/errors.h"
-#include "lbm_solver/coupling/coupled_run.h"
+#include "lbm_solver/coupling/run.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "protocol/mpi_channel.h"

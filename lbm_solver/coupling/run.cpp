@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "lbm_solver/coupling/coupled_run.h"
+#include "lbm_solver/coupling/run.h"
 
 #include <cmath>
 #include <ctime>
@@ -17,9 +17,9 @@ std::int64_t last_interval(const Plan& plan, const RunOptions& options) {
   return std::min(plan.intervals, std::max<std::int64_t>(1, static_cast<std::int64_t>(intervals)));
 }
 
-/// Completes the summary of a run and writes it.
-Summary finish(const Scene& scene, const RunOptions& options, const Observers& observers,
-               const PartClock& clock, const std::string& ending) {
+/// The summary of a run that has ended.
+Summary summarise(const Scene& scene, const RunOptions& options, const Observers& observers,
+                  const PartClock& clock, const std::string& ending) {
   Summary summary = observers.summary(clock.total());
   summary.scene = scene.title;
   summary.set = options.set;
@@ -38,7 +38,8 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
                     const RunOptions& options, Log& log) {
   protocol::FluidSession solid(channel, make_hello(scene, plan), scene.coupling->timeout);
   Fluid fluid = make_fluid(scene, plan);
-  const std::vector<Disc> obstacles = obstacle_discs(scene, plan);
+  std::vector<Disc> discs = obstacle_discs(scene, plan);  // obstacles first, then the particles
+  const std::size_t obstacles = discs.size();
   Particles particles(plan.units, scene.fluid, *scene.coupling);
   const protocol::Hello& partner = solid.agree();
   log.say(0, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s", partner.program,
@@ -61,7 +62,7 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
       break;
     }
     for (int step = 0; step < plan.fluid_steps; ++step) {
-      std::vector<Disc> discs = obstacles;
+      discs.resize(obstacles);
       const auto moving = particles.discs(step * plan.units.dt);
       discs.insert(discs.end(), moving.begin(), moving.end());
       fluid.place(discs);
@@ -70,8 +71,8 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
       clock.charge("sweep");
       const std::vector<DiscLoad> loads = fluid.loads();
       const std::span all(loads);
-      if (!obstacles.empty()) observers.add_loads(all.first(obstacles.size()));
-      particles.add(all.subspan(obstacles.size()));
+      if (obstacles > 0) observers.add_loads(all.first(obstacles));
+      particles.add(all.subspan(obstacles));
       clock.charge("loads");
     }
     solid.answer(particles.mean_loads(plan.fluid_steps),
@@ -82,7 +83,7 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
   }
   clock.charge("output");
 
-  Summary summary = finish(scene, options, observers, clock, ending);
+  Summary summary = summarise(scene, options, observers, clock, ending);
   summary.versions[partner.program] = partner.program_version;
   summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
   summary.waiting = clock.parts().at("waiting");
@@ -153,7 +154,7 @@ Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& option
   }
   observers.at_end(step, fluid, nullptr);
   clock.charge("output");
-  const Summary summary = finish(scene, options, observers, clock, ending);
+  const Summary summary = summarise(scene, options, observers, clock, ending);
   write_summary(options.out, summary);
   return summary;
 }
