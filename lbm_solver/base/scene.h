@@ -70,8 +70,9 @@ struct NumericsScene {
   std::optional<double> time_step;           ///< fluid step [s]; absent: chosen by rule
   std::string collision = "auto";            ///< see solver/plan.h for what auto takes
   std::string solid_term = "auto";
-  double magic = 3.0 / 16.0;  ///< Λ of TRT
-  double smagorinsky = 0.0;   ///< S_c; 0: no turbulence model
+  bool weight_is_fraction = false;  ///< B = ε instead of B(ε, τ)
+  double magic = 3.0 / 16.0;        ///< Λ of TRT
+  double smagorinsky = 0.0;         ///< S_c; 0: no turbulence model
 };
 
 struct ParticleScene {

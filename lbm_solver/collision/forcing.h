@@ -80,4 +80,13 @@ template <class Force, class V>
   return q;
 }
 
+/// Relaxation time of a cell's viscosity with its eddy viscosity.
+template <class Turbulence, class Force, class V>
+[[gnu::always_inline]] inline V turbulent_tau(const V (&f)[D2Q9::Q], const Moments<V>& m,
+                                              const Turbulence& turbulence, const Force& force) {
+  const V rho = m.drho + V(1.0), inverse = V(1.0) / rho;
+  const V ux = force.momentum_x(m.jx) * inverse, uy = force.momentum_y(m.jy) * inverse;
+  return turbulence.tau(non_equilibrium(f, m.drho, ux, uy, force), rho);
+}
+
 }  // namespace lbm

@@ -103,7 +103,9 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   part(p.kernel.force, "body force", "body force");
   part(p.kernel.turbulence != "none", "Smagorinsky turbulence", "turbulence model");
   part(p.kernel.solid_term != "none",
-       "covered cells " + p.kernel.solid_term + " with B(ε,τ), loads", "solids");
+       "covered cells " + p.kernel.solid_term +
+           (p.kernel.weight == WeightRule::Viscous ? " with B(ε,τ), loads" : " with B = ε, loads"),
+       "solids");
   part(!s.obstacles.empty(), fmt::format("{} obstacles at rest", s.obstacles.size()), "obstacles");
   part(s.coupling.has_value(), "solid program", "solid program");
   if (s.coupling) {

@@ -8,6 +8,7 @@
 
 #include "lbm_solver/base/simd.h"
 #include "lbm_solver/immersed/footprint.h"
+#include "lbm_solver/immersed/weight.h"
 
 namespace lbm {
 
@@ -20,21 +21,17 @@ class CoverMap {
   /// What the collision of one block needs, and the force it leaves behind. The sweep reads and
   /// writes nothing else of the map.
   struct alignas(64) Block {
-    Lanes weight;  ///< B
+    Lanes weight;  ///< B, or ε where the kernel knows τ
     Lanes layer;   ///< 1 where Σ ε < 1, 0 below the surface, -1 in the core of a solid
     Lanes us, vs;  ///< solid velocity, ε-weighted mean
     Lanes fx, fy;  ///< force on the solids of the cell
   };
-  /// How the solids in a cell share it; beside the sweep's records, same numbers.
-  struct alignas(64) Share {
-    Lanes eps;      ///< Σ ε over the solids in the cell
-    Lanes per_eps;  ///< 1 / Σ ε, 0 where nothing covers the cell
-  };
 
-  CoverMap(const Domain& domain, double tau);
+  /// @param weight  B of a cell; the plain fraction where the kernel makes B of it
+  CoverMap(const Domain& domain, const ImmersedWeight& weight);
 
-  /// Places the discs where they are now. A disc that has not moved keeps its fractions; velocities
-  /// are always taken anew.
+  /// Places the discs where they are now. A disc that has not moved keeps its fractions; where
+  /// nothing has moved or changed its velocity, nothing is done.
   void update(std::span<const Disc> discs);
 
   /// Cells [x0, x1) × [y0, y1) are a wall at rest from the next update on: bounce-back in every
@@ -43,19 +40,15 @@ class CoverMap {
 
   /// Record of block b of row y, or null.
   Block* block(int y, int b) {
-    const std::int32_t index = index_[static_cast<std::size_t>(y) * blocks_per_row_ + b];
-    return index < 0 ? nullptr : &blocks_[index];
+    const std::int32_t record = entry(y, b).record;
+    return record < 0 ? nullptr : &blocks_[record];
   }
   const Block* block(int y, int b) const { return const_cast<CoverMap*>(this)->block(y, b); }
-  /// Record of a block that is known to have one.
-  std::int32_t record(int y, int b) const {
-    return index_[static_cast<std::size_t>(y) * blocks_per_row_ + b];
-  }
   int blocks_per_row() const { return blocks_per_row_; }
   /// First block of row y from b on that has a record; blocks_per_row() where none has.
   int next_covered(int y, int b) const {
-    const std::int32_t* row = &index_[static_cast<std::size_t>(y) * blocks_per_row_];
-    while (b < blocks_per_row_ && row[b] < 0) ++b;
+    const Entry* row = &entry(y, 0);
+    while (b < blocks_per_row_ && row[b].record < 0) ++b;
     return b;
   }
 
@@ -64,24 +57,41 @@ class CoverMap {
   /// neither on threads nor on the order of the discs.
   std::vector<DiscLoad> loads() const;
 
+  /// Σ ε of a cell, at most 1.
   double solid_fraction(int x, int y) const;
   std::size_t covered_blocks() const { return blocks_.size(); }
   std::size_t bytes() const;
 
  private:
+  /// A block of the lattice in the map.
+  struct Entry {
+    std::int32_t record = -1;  ///< in blocks_; -1: pure fluid
+    std::int32_t share = -1;   ///< in shares_; -1: one solid alone
+  };
+  /// How the solids in a block with more than one share its cells.
+  struct alignas(64) Share {
+    Lanes eps;                ///< Σ ε
+    std::int32_t record = 0;  ///< its block
+  };
   struct Wall {
     int x0, y0, x1, y1;
   };
+
+  const Entry& entry(int y, int b) const {
+    return index_[static_cast<std::size_t>(y) * blocks_per_row_ + b];
+  }
   void place_blocks();
-  void mark(int y, int x0, int x1);
-  void add(const Wall& wall);
-  void add(const Disc& disc, const Footprint& footprint);
-  void finish();
+  void count(int y, int first_block, int blocks);
+  void write(const Disc& disc, const Footprint& footprint);
+  void begin_shared();
+  void share(const Disc& disc, const Footprint& footprint);
+  void finish_shared();
+  void write(const Wall& wall);
 
   Domain domain_;
-  double tau_;
+  ImmersedWeight weight_;
   int blocks_per_row_;
-  std::vector<std::int32_t> index_;  // [row][block], -1: pure fluid
+  std::vector<Entry> index_;  // [row][block]
   std::vector<Block> blocks_;
   std::vector<Share> shares_;
   std::vector<Wall> walls_;

@@ -65,12 +65,16 @@ void Footprint::add_image(const Vec2& centre, double radius, const Domain& domai
     const int eps = static_cast<int>(fractions_.size());
     spans_.push_back(
         {y, block, blocks, eps, clip_core(-half_core), clip_core(half_core), first_arm, dy});
-    fractions_.resize(fractions_.size() + static_cast<std::size_t>(blocks) * kPackWidth, 0.0);
-    const double full2 = inner * inner - dy * dy;
-    for (int x = x_begin; x < x_end; ++x) {
-      const double dx = x + 0.5 - centre.x();
-      fractions_[eps + x - first] = dx * dx < full2 ? 1.0 : disc_fraction(dx, dy, radius);
+    fractions_.resize(fractions_.size() + static_cast<std::size_t>(blocks) * kPackWidth);
+    const Pack full2(inner * inner - dy * dy);
+    for (int k = 0; k < blocks; ++k) {
+      const Pack dx = Pack(first_arm + k * kPackWidth) + lane_numbers();
+      Pack fraction = disc_fraction(dx, Pack(dy), radius);
+      where(dx * dx < full2, fraction) = Pack(1.0);
+      store(&fractions_[eps + k * kPackWidth], fraction);
     }
+    std::fill(fractions_.begin() + eps + std::min(blocks * kPackWidth, domain.nx - first),
+              fractions_.end(), 0.0);  // no cells beyond the end of the row
   }
 }
 

@@ -1,89 +1,74 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <algorithm>
+#include <experimental/simd>
+#include <string>
+#include <vector>
 
 #include "lbm_solver/collision/equilibrium.h"
+#include "lbm_solver/immersed/weight.h"
 
 namespace lbm {
 
-/// Where a covered cell lies in its solid, as factors that a term may use.
+/// The collision Ω^s that drives a covered cell towards the solid's velocity u_s. Every term in use
+/// is linear in the populations and in the equilibria of the fluid's and of the solid's velocity,
+/// so it is a row of numbers, one triple for each half of a pair:
+///   Ω^s± = f_part f± + fluid_part f±^eq(rho, u) + solid_part f±^eq(rho, u_s)
+/// The even parts add up to zero (mass), the odd ones too: Σ c_i Ω_i^s = k rho (u_s - u) with
+/// k = odd.solid_part.
+struct SolidTerm {
+  struct Parts {
+    double f, fluid, solid;
+  };
+  struct Halves {
+    Parts even, odd;
+  };
+  /// A cell that the solid covers in part, one that it covers whole, and one in its core, more than
+  /// two cells below the surface.
+  Halves surface, whole, core;
+};
+
+/// A term by its name. @param tau  relaxation time of the viscosity
+/// @throws std::invalid_argument naming the known ones
+SolidTerm solid_term(const std::string& name, double tau);
+std::vector<std::string> known_solid_terms();
+
+/// f_i^eq(rho, u) times one factor plus f_i^eq(rho, u_s) times another, as halves of pairs, for the
+/// cost of about one equilibrium: only the second moments a u u + b u_s u_s and the momenta differ.
 template <class V>
-struct Layer {
-  V surface;  ///< 1 where the solid covers the cell in part, 0 where it covers it whole
-  V memory;   ///< 0 in the core, more than a few cells below the surface, else 1
+class TwoEquilibria {
+ public:
+  struct Factors {
+    V fluid, solid;
+  };
+  [[gnu::always_inline]] TwoEquilibria(const V& drho, const V& ux, const V& uy, const V& us,
+                                       const V& vs, const Factors& even, const Factors& odd) {
+    const V rho = drho + V(1.0);
+    const V a = rho * even.fluid, b = rho * even.solid;
+    xx_ = a * ux * ux + b * us * us;
+    yy_ = a * uy * uy + b * vs * vs;
+    xy_ = a * ux * uy + b * us * vs;
+    base_ = (even.fluid + even.solid) * drho - V(1.5) * (xx_ + yy_);
+    jx_ = rho * (odd.fluid * ux + odd.solid * us);
+    jy_ = rho * (odd.fluid * uy + odd.solid * vs);
+  }
 
-  /// @param layer  1 surface, 0 whole, -1 core
-  [[gnu::always_inline]] static Layer of(const V& layer) {
-    using std::max;
-    using std::min;
-    return {max(layer, V(0.0)), V(1.0) + min(layer, V(0.0))};
-  }
-};
+  [[gnu::always_inline]] V rest() const { return V(D2Q9::w[0]) * base_; }
 
-/// The collision Ω^s that drives a covered cell towards the solid's velocity u_s, as even and odd
-/// halves of each pair. `momentum_factor` is k in Σ c_i Ω_i^s = k rho (u_s - u).
+  template <int i>
+  [[gnu::always_inline]] lbm::Halves<V> pair() const {
+    V stress;
+    if constexpr (D2Q9::c[i][1] == 0)
+      stress = xx_;
+    else if constexpr (D2Q9::c[i][0] == 0)
+      stress = yy_;
+    else
+      stress = xx_ + yy_ + V(2.0 * D2Q9::c[i][0] * D2Q9::c[i][1]) * xy_;
+    return {V(D2Q9::w[i]) * (base_ + V(4.5) * stress), V(3.0 * D2Q9::w[i]) * along<i>(jx_, jy_)};
+  }
 
-/// [NobleTorczynski1998], paper A Eq 35:  Ω_i^s = f_-i - f_i + f_i^eq(rho,u_s) - f_-i^eq(rho,u)
-struct NobleTorczynski {
-  template <class V>
-  [[gnu::always_inline]] static V momentum_factor(const Layer<V>&) {
-    return V(1.0);
-  }
-  template <class V>
-  [[gnu::always_inline]] static V rest(const V&, const V& eq, const V& solid, const Layer<V>&) {
-    return solid - eq;
-  }
-  template <class V>
-  [[gnu::always_inline]] static Halves<V> pair(const Halves<V>& f, const Halves<V>& eq,
-                                               const Halves<V>& solid, const Layer<V>&) {
-    return {solid.even - eq.even, solid.odd + eq.odd - V(2.0) * f.odd};
-  }
-};
-
-/// [Holdych2003], paper A Eq 39:  Ω_i^s = f_-i - f_i + f_i^eq(rho,u_s) - f_-i^eq(rho,u_s)
-/// In a whole cell this is full bounce-back: trapped fluid overshoots u_s and rings with period
-/// two, which throws a freely moving light particle out of the box within some ten steps.
-struct Holdych {
-  template <class V>
-  [[gnu::always_inline]] static V momentum_factor(const Layer<V>&) {
-    return V(2.0);
-  }
-  template <class V>
-  [[gnu::always_inline]] static V rest(const V&, const V&, const V&, const Layer<V>&) {
-    return V(0.0);
-  }
-  template <class V>
-  [[gnu::always_inline]] static Halves<V> pair(const Halves<V>& f, const Halves<V>&,
-                                               const Halves<V>& solid, const Layer<V>&) {
-    return {V(0.0), V(2.0) * (solid.odd - f.odd)};
-  }
-};
-
-/// Holdych in surface cells, Noble–Torczynski below them, plain equilibrium of u_s in the core:
-///   surface:  f_-i - f_i + f_i^eq(u_s) - f_-i^eq(u_s)
-///   whole:    f_i^eq(u_s) - f_i + memory (f_-i - f_-i^eq(u))
-/// As accurate as Holdych (only the first whole cells shape the flow outside), but a whole cell
-/// takes the solid's velocity in one step, so that the force contains exactly the inertia of the
-/// fluid inside, which the coupling gives back exactly; and the core forgets, so that nothing rings
-/// there.
-struct LayeredHoldych {
-  template <class V>
-  [[gnu::always_inline]] static V momentum_factor(const Layer<V>& layer) {
-    return V(1.0) + layer.surface;
-  }
-  template <class V>
-  [[gnu::always_inline]] static V rest(const V& f, const V& eq, const V& solid,
-                                       const Layer<V>& layer) {
-    return (V(1.0) - layer.surface) * (solid - f + layer.memory * (f - eq));
-  }
-  template <class V>
-  [[gnu::always_inline]] static Halves<V> pair(const Halves<V>& f, const Halves<V>& eq,
-                                               const Halves<V>& solid, const Layer<V>& layer) {
-    const V odd = solid.odd - f.odd;
-    return {(V(1.0) - layer.surface) * (solid.even - f.even + layer.memory * (f.even - eq.even)),
-            odd + layer.memory * (eq.odd - f.odd) + layer.surface * (solid.odd - eq.odd)};
-  }
+ private:
+  V xx_, yy_, xy_, base_, jx_, jy_;
 };
 
 /// Immersed-moving-boundary collision of a covered cell:
@@ -92,75 +77,96 @@ struct LayeredHoldych {
 /// Ω^s,
 ///   F = -B Σ c_i Ω_i^s = k B rho (u - u_s),   rho u = j without any body force,
 /// an identity that holds to round-off, so no sum over directions is needed.
-template <class Term>
 class CoveredCollision {
  public:
+  CoveredCollision(const SolidTerm& term, WeightRule rule)
+      : term_(term), resistance_(rule == WeightRule::Viscous ? 1.0 : 0.0) {}
+
   template <class V>
   struct Force {
     V x, y;  ///< on the solid, lattice units
   };
 
+  /// What the cover map knows of a cell.
+  template <class V>
+  struct Cell {
+    V weight;  ///< B; the solid fraction where the viscosity differs from cell to cell
+    V layer;   ///< 1 surface, 0 whole, -1 core
+    V us, vs;  ///< solid velocity at the cell centre, lattice units
+  };
+
   /// @param f        populations [q] that arrived; overwritten
   /// @param collide  the operator of pure fluid
-  /// @param weight   B [1], 0 … 1
-  /// @param layer    where the cell lies in its solid
-  /// @param us, vs   solid velocity at the cell centre, lattice units
   template <class V, class Collision>
-  [[gnu::always_inline]] static Force<V> apply(V (&f)[D2Q9::Q], const Collision& collide, V weight,
-                                               const Layer<V>& layer, V us, V vs) {
+  [[gnu::always_inline]] Force<V> apply(V (&f)[D2Q9::Q], const Collision& collide,
+                                        const Cell<V>& cell) const {
     const Moments<V> m = moments(f);
     const V rho = m.drho + V(1.0), inverse = V(1.0) / rho;
     const V ux = m.jx * inverse, uy = m.jy * inverse;
-    const Equilibrium<V> eq(m.drho, ux, uy), solid(m.drho, us, vs);
-    if constexpr (Collision::constant_rates)
-      relax(f, collide, weight, layer, eq, solid);
-    else
-      blend(f, collide, weight, layer, eq, solid);
-    const V strength = Term::momentum_factor(layer) * weight * rho;
-    return {strength * (ux - us), strength * (uy - vs)};
+    V weight = cell.weight;
+    if constexpr (Collision::turbulent) {
+      const V s = collide.relaxation_time(f, m) - V(0.5);
+      weight = weight * s / (V(resistance_) * (V(1.0) - weight) + s);
+    }
+    const auto surface = cell.layer > V(0.5), core = cell.layer < V(-0.5);
+    const auto pick = [&](const double SolidTerm::Parts::*part,
+                          const SolidTerm::Parts SolidTerm::Halves::*half)
+        __attribute__((always_inline)) {
+      V value((term_.whole.*half).*part);
+      where(surface, value) = V((term_.surface.*half).*part);
+      where(core, value) = V((term_.core.*half).*part);
+      return weight * value;
+    };
+    using Half = SolidTerm::Halves;
+    using Part = SolidTerm::Parts;
+    V even_f = pick(&Part::f, &Half::even), odd_f = pick(&Part::f, &Half::odd);
+    typename TwoEquilibria<V>::Factors even{pick(&Part::fluid, &Half::even),
+                                            pick(&Part::solid, &Half::even)};
+    typename TwoEquilibria<V>::Factors odd{pick(&Part::fluid, &Half::odd),
+                                           pick(&Part::solid, &Half::odd)};
+    const V strength = odd.solid * rho;
+    if constexpr (Collision::constant_rates) {
+      // The fluid's part is a relaxation too, with (1-B) times its rates.
+      const V rest = V(1.0) - weight;
+      const V even_rate = rest * V(collide.even_rate()), odd_rate = rest * V(collide.odd_rate());
+      even_f -= even_rate;
+      even.fluid += even_rate;
+      odd_f -= odd_rate;
+      odd.fluid += odd_rate;
+      const TwoEquilibria<V> eq(m.drho, ux, uy, cell.us, cell.vs, even, odd);
+      f[0] += even_f * f[0] + eq.rest();
+      unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
+        constexpr int i = 2 * p + 1;
+        const lbm::Halves<V> e = eq.template pair<i>();
+        const V even_gain = even_f * (V(0.5) * (f[i] + f[i + 1])) + e.even;
+        const V odd_gain = odd_f * (V(0.5) * (f[i] - f[i + 1])) + e.odd;
+        f[i] += even_gain + odd_gain;
+        f[i + 1] += even_gain - odd_gain;
+      });
+    } else {
+      V fluid[D2Q9::Q];
+      unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
+      collide(fluid);
+      even_f += weight;
+      odd_f += weight;
+      const V rest = V(1.0) - weight;
+      const TwoEquilibria<V> eq(m.drho, ux, uy, cell.us, cell.vs, even, odd);
+      f[0] = rest * fluid[0] + even_f * f[0] + eq.rest();
+      unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
+        constexpr int i = 2 * p + 1;
+        const lbm::Halves<V> e = eq.template pair<i>();
+        const V even_part = even_f * (V(0.5) * (f[i] + f[i + 1])) + e.even;
+        const V odd_part = odd_f * (V(0.5) * (f[i] - f[i + 1])) + e.odd;
+        f[i] = rest * fluid[i] + even_part + odd_part;
+        f[i + 1] = rest * fluid[i + 1] + even_part - odd_part;
+      });
+    }
+    return {strength * (ux - cell.us), strength * (uy - cell.vs)};
   }
 
  private:
-  /// Any operator: its result and the solid's, weighted.
-  template <class V, class Collision>
-  [[gnu::always_inline]] static void blend(V (&f)[D2Q9::Q], const Collision& collide,
-                                           const V& weight, const Layer<V>& layer,
-                                           const Equilibrium<V>& eq, const Equilibrium<V>& solid) {
-    V fluid[D2Q9::Q];
-    unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
-    collide(fluid);
-    const V rest = Term::rest(f[0], eq.rest(), solid.rest(), layer);
-    f[0] = fluid[0] + weight * (f[0] - fluid[0] + rest);
-    unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
-      constexpr int i = 2 * p + 1;
-      const Halves<V> here{V(0.5) * (f[i] + f[i + 1]), V(0.5) * (f[i] - f[i + 1])};
-      const Halves<V> s = Term::pair(here, eq.template pair<i>(), solid.template pair<i>(), layer);
-      f[i] = fluid[i] + weight * (f[i] - fluid[i] + s.even + s.odd);
-      f[i + 1] = fluid[i + 1] + weight * (f[i + 1] - fluid[i + 1] + s.even - s.odd);
-    });
-  }
-
-  /// The same for two constant rates, where the fluid's part is a relaxation with (1-B) times its
-  /// rates.
-  template <class V, class Collision>
-  [[gnu::always_inline]] static void relax(V (&f)[D2Q9::Q], const Collision& collide,
-                                           const V& weight, const Layer<V>& layer,
-                                           const Equilibrium<V>& eq, const Equilibrium<V>& solid) {
-    const V even_rate = (V(1.0) - weight) * V(collide.even_rate());
-    const V odd_rate = (V(1.0) - weight) * V(collide.odd_rate());
-    f[0] +=
-        even_rate * (eq.rest() - f[0]) + weight * Term::rest(f[0], eq.rest(), solid.rest(), layer);
-    unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
-      constexpr int i = 2 * p + 1;
-      const auto e = eq.template pair<i>();
-      const Halves<V> here{V(0.5) * (f[i] + f[i + 1]), V(0.5) * (f[i] - f[i + 1])};
-      const Halves<V> s = Term::pair(here, e, solid.template pair<i>(), layer);
-      const V even_gain = even_rate * (e.even - here.even) + weight * s.even;
-      const V odd_gain = odd_rate * (e.odd - here.odd) + weight * s.odd;
-      f[i] += even_gain + odd_gain;
-      f[i + 1] += even_gain - odd_gain;
-    });
-  }
+  SolidTerm term_;
+  double resistance_;  // of the fluid part of a cell: 1 in B(ε,τ), 0 where B = ε
 };
 
 }  // namespace lbm

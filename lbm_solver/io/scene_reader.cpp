@@ -82,8 +82,10 @@ NumericsScene read_numerics(TableReader t) {
   n.time_step = t.optional_number("time_step", Bounds::positive(), "s");
   n.collision = t.choice_or("collision", n.collision,
                             {"auto", "bgk", "trt", "central_moment", "recursive_regularised"});
-  n.solid_term = t.choice_or("solid_term", n.solid_term,
-                             {"auto", "layered_holdych", "holdych", "noble_torczynski"});
+  n.solid_term =
+      t.choice_or("solid_term", n.solid_term,
+                  {"auto", "layered_holdych", "holdych", "noble_torczynski", "superposition"});
+  n.weight_is_fraction = t.choice_or("weight", "viscous", {"viscous", "fraction"}) == "fraction";
   n.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
   n.magic = t.number_or("magic", n.magic, {1e-6, 10.0}, "");
   t.finish();

@@ -20,7 +20,10 @@ Fluid::Fluid(const Domain& domain, const KernelChoice& choice)
                   choice.force ? 0.5 * choice.parameters.force_y : 0.0),
       cover_(choice.solid_term == "none"
                  ? nullptr
-                 : std::make_unique<CoverMap>(domain, choice.parameters.tau)) {}
+                 : std::make_unique<CoverMap>(
+                       domain, choice.turbulence == "none"
+                                   ? ImmersedWeight{choice.weight, choice.parameters.tau}
+                                   : ImmersedWeight{WeightRule::Fraction})) {}
 
 void Fluid::set_equilibrium(int x, int y, double rho, const Vec2& u) {
   const Vec2 before = u - half_force_ / rho;  // the step adds the other half of a body force

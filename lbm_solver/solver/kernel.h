@@ -8,6 +8,7 @@
 #include "lbm_solver/collision/parameters.h"
 #include "lbm_solver/field/esoteric_pull.h"
 #include "lbm_solver/immersed/cover_map.h"
+#include "lbm_solver/immersed/weight.h"
 
 namespace lbm {
 
@@ -26,12 +27,12 @@ struct KernelChoice {
   bool force = false;               ///< uniform body force
   std::string solid_term = "none";  ///< "none" or one of known_solid_terms()
   CollisionParameters parameters;
+  WeightRule weight = WeightRule::Viscous;
 };
 
-/// @throws std::invalid_argument naming the rows that exist
+/// @throws std::invalid_argument naming the rows, or the solid terms, that exist
 std::unique_ptr<Kernel> make_kernel(const KernelChoice& choice);
 
 std::vector<std::string> known_collisions();
-std::vector<std::string> known_solid_terms();
 
 }  // namespace lbm

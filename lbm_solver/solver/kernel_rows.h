@@ -9,9 +9,8 @@ namespace lbm {
 
 struct KernelTableRow {
   std::string collision, turbulence;
-  bool force;
-  std::string solid_term;
-  std::unique_ptr<Kernel> (*make)(const CollisionParameters&);
+  bool force, solids;
+  std::unique_ptr<Kernel> (*make)(const KernelChoice&);
 };
 using KernelRows = std::vector<KernelTableRow>;
 
@@ -21,20 +20,16 @@ KernelRows trt_rows();
 KernelRows central_moment_rows();
 KernelRows recursive_regularised_rows();
 
-template <class Collision, class Term>
-std::unique_ptr<Kernel> make_row_kernel(const CollisionParameters& p) {
-  return std::make_unique<RowKernel<Collision, Term>>(p);
+template <class Collision, class Solids>
+std::unique_ptr<Kernel> make_row_kernel(const KernelChoice& c) {
+  return std::make_unique<RowKernel<Collision, Solids>>(c);
 }
 
-/// The rows of one operator with one turbulence model and force: every solid term.
+/// The rows of one operator with one turbulence model and force.
 template <class Collision>
 void add_rows(KernelRows& rows, const char* name, const char* turbulence, bool force) {
-  rows.push_back({name, turbulence, force, "none", make_row_kernel<Collision, NoSolid>});
-  rows.push_back(
-      {name, turbulence, force, "noble_torczynski", make_row_kernel<Collision, NobleTorczynski>});
-  rows.push_back({name, turbulence, force, "holdych", make_row_kernel<Collision, Holdych>});
-  rows.push_back(
-      {name, turbulence, force, "layered_holdych", make_row_kernel<Collision, LayeredHoldych>});
+  rows.push_back({name, turbulence, force, false, make_row_kernel<Collision, NoSolids>});
+  rows.push_back({name, turbulence, force, true, make_row_kernel<Collision, CoveredCells>});
 }
 
 /// All rows of an operator that is a template on turbulence model and force.

@@ -20,30 +20,28 @@ const KernelRows& table() {
 }
 
 std::string text(const std::string& collision, const std::string& turbulence, bool force,
-                 const std::string& solid_term) {
+                 bool solids) {
   return fmt::format("{} + {} + {} + {}", collision, turbulence == "none" ? "laminar" : turbulence,
-                     force ? "force" : "no force", solid_term == "none" ? "no solids" : solid_term);
+                     force ? "force" : "no force", solids ? "solids" : "no solids");
 }
 
 }  // namespace
 
 std::unique_ptr<Kernel> make_kernel(const KernelChoice& c) {
+  const bool solids = c.solid_term != "none";
   std::string known;
   for (const KernelTableRow& row : table()) {
     if (c.collision == row.collision && c.turbulence == row.turbulence && c.force == row.force &&
-        c.solid_term == row.solid_term)
-      return row.make(c.parameters);
-    known += "\n  " + text(row.collision, row.turbulence, row.force, row.solid_term);
+        solids == row.solids)
+      return row.make(c);
+    known += "\n  " + text(row.collision, row.turbulence, row.force, row.solids);
   }
-  throw std::invalid_argument(fmt::format(
-      "no kernel for {}; known:{}", text(c.collision, c.turbulence, c.force, c.solid_term), known));
+  throw std::invalid_argument(fmt::format("no kernel for {}; known:{}",
+                                          text(c.collision, c.turbulence, c.force, solids), known));
 }
 
 std::vector<std::string> known_collisions() {
   return {"bgk", "trt", "central_moment", "recursive_regularised"};
-}
-std::vector<std::string> known_solid_terms() {
-  return {"noble_torczynski", "holdych", "layered_holdych"};
 }
 
 }  // namespace lbm

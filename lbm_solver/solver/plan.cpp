@@ -186,6 +186,7 @@ void choose_kernel(const Scene& s, Plan& plan) {
     k.solid_term = n.solid_term != "auto" ? n.solid_term
                    : k.collision == "trt" ? "layered_holdych"
                                           : "noble_torczynski";
+  k.weight = n.weight_is_fraction ? WeightRule::Fraction : WeightRule::Viscous;
   const Vec2 force = s.fluid.body_force * (dt * dt / dx);
   k.parameters = {0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx), n.magic, n.smagorinsky, force.x(),
                   force.y()};

@@ -10,27 +10,34 @@
 
 namespace lbm {
 
-/// A scene without solids: no covered collision, and none is asked for.
-struct NoSolid {};
+/// What happens in covered cells: nothing, in a scene without solids, and none is asked for.
+struct NoSolids {
+  explicit NoSolids(const KernelChoice&) {}
+};
+/// Or a collision with the solid.
+struct CoveredCells {
+  explicit CoveredCells(const KernelChoice& c)
+      : collision(lbm::solid_term(c.solid_term, c.parameters.tau), c.weight) {}
+  CoveredCollision collision;
+};
 
-/// The sweep of one lattice, collision and solid term: every row through the same few lines, eight
-/// cells at a time, the rest of a row one by one with the same source.
-template <class Collision, class Term>
+/// The sweep of one lattice and collision, with or without solids: every row through the same few
+/// lines, eight cells at a time, the rest of a row with the same source behind a mask.
+template <class Collision, class Solids>
 class RowKernel final : public Kernel {
-  static constexpr bool kSolid = !std::is_same_v<Term, NoSolid>;
-  using Covered = CoveredCollision<std::conditional_t<kSolid, Term, Holdych>>;
+  static constexpr bool kSolids = std::is_same_v<Solids, CoveredCells>;
 
  public:
-  explicit RowKernel(const CollisionParameters& p) : collide_(p) {}
+  explicit RowKernel(const KernelChoice& c) : collide_(c.parameters), solids_(c) {}
 
   void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover) const override {
 #pragma omp parallel
     {
       flush_denormals();
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
       for (int y = 0; y < f.ny(); ++y) {
         const EsotericPull::Row row = stream.open(f, y);
-        if constexpr (kSolid)
+        if constexpr (kSolids)
           sweep_row_with_solids(row, y, f.nx(), *cover);
         else
           sweep_row(row, 0, f.nx());
@@ -42,8 +49,8 @@ class RowKernel final : public Kernel {
  private:
   /// Pure fluid from cell x to cell end.
   void sweep_row(const EsotericPull::Row& row, int x, int end) const {
-    for (; x + kPackWidth <= end; x += kPackWidth) fluid<Pack>(row, x);
-    for (; x < end; ++x) fluid<double>(row, x);
+    for (; x + kPackWidth <= end; x += kPackWidth) fluid(row, x, AllLanes());
+    if (x < end) fluid(row, x, FirstLanes(end - x));
   }
 
   /// Runs of pure fluid between the covered blocks: the first loop never asks about solids.
@@ -52,39 +59,44 @@ class RowKernel final : public Kernel {
       const int next = cover.next_covered(y, b);
       sweep_row(row, b * kPackWidth, std::min(next * kPackWidth, n));
       if (next == cover.blocks_per_row()) return;
-      covered_block(row, next * kPackWidth, n, *cover.block(y, next));
+      const int x = next * kPackWidth;
+      if (x + kPackWidth <= n)
+        covered(row, x, *cover.block(y, next), AllLanes());
+      else
+        covered(row, x, *cover.block(y, next), FirstLanes(n - x));
       b = next;
     }
   }
 
-  [[gnu::noinline]] void covered_block(const EsotericPull::Row& row, int x, int n,
-                                       CoverMap::Block& block) const {
-    if (x + kPackWidth <= n) return covered<Pack>(row, x, block, 0);
-    for (int lane = 0; x + lane < n; ++lane) covered<double>(row, x + lane, block, lane);
-  }
-
-  template <class V>
-  [[gnu::always_inline]] void fluid(const EsotericPull::Row& row, int x) const {
-    V f[D2Q9::Q];
-    unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { f[q] = load<V>(row.in[q] + x); });
+  template <class Lanes>
+  [[gnu::always_inline]] void fluid(const EsotericPull::Row& row, int x, const Lanes& lanes) const {
+    Pack f[D2Q9::Q];
+    unroll<D2Q9::Q>([&](auto q)
+                        __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
     collide_(f);
-    unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { store(row.out[q] + x, f[q]); });
+    unroll<D2Q9::Q>([&](auto q)
+                        __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
   }
 
-  template <class V>
-  [[gnu::always_inline]] void covered(const EsotericPull::Row& row, int x, CoverMap::Block& block,
-                                      int lane) const {
-    V f[D2Q9::Q];
-    unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { f[q] = load<V>(row.in[q] + x); });
-    const auto force = Covered::apply(f, collide_, load<V>(&block.weight[lane]),
-                                      Layer<V>::of(load<V>(&block.layer[lane])),
-                                      load<V>(&block.us[lane]), load<V>(&block.vs[lane]));
-    unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { store(row.out[q] + x, f[q]); });
-    store(&block.fx[lane], force.x);
-    store(&block.fy[lane], force.y);
+  template <class Lanes>
+  [[gnu::noinline]] void covered(const EsotericPull::Row& row, int x, CoverMap::Block& block,
+                                 const Lanes& lanes) const {
+    Pack f[D2Q9::Q];
+    unroll<D2Q9::Q>([&](auto q)
+                        __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
+    const auto force =
+        solids_.collision.apply(f, collide_,
+                                CoveredCollision::Cell<Pack>{
+                                    load<Pack>(block.weight.data()), load<Pack>(block.layer.data()),
+                                    load<Pack>(block.us.data()), load<Pack>(block.vs.data())});
+    unroll<D2Q9::Q>([&](auto q)
+                        __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
+    store(block.fx.data(), force.x);
+    store(block.fy.data(), force.y);
   }
 
   Collision collide_;
+  Solids solids_;
 };
 
 }  // namespace lbm

@@ -40,6 +40,8 @@ Cell NaiveLattice::solid_term(const Cell& f, const Cell& eq, double rho,
       omega[i] = noble_torczynski;
     else if (choice_.solid_term == "holdych")
       omega[i] = holdych;
+    else if (choice_.solid_term == "superposition")
+      omega[i] = solid[i] - f[i] + (1.0 - 1.0 / choice_.parameters.tau) * (f[i] - eq[i]);
     else
       omega[i] = !c.whole ? holdych : c.core ? solid[i] - f[i] : noble_torczynski;
   }
@@ -137,6 +139,17 @@ Cell recursive_regularised(double rho, const Vec2& u, const Eigen::Matrix2d& q, 
 
 }  // namespace
 
+double NaiveLattice::tau(const Cell& f) const {
+  const auto& p = choice_.parameters;
+  if (choice_.turbulence != "smagorinsky") return p.tau;
+  const Vec2 force = choice_.force ? Vec2(p.force_x, p.force_y) : Vec2(0.0, 0.0);
+  const Macroscopic m = macroscopic(f);
+  const Vec2 u = (m.j + 0.5 * force) / m.rho;
+  const Eigen::Matrix2d q = stress(f, naive_equilibrium(m.rho, u), force, u);
+  return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + 18.0 * p.smagorinsky * p.smagorinsky *
+                                                      std::sqrt(2.0) * q.norm() / m.rho));
+}
+
 Cell NaiveLattice::fluid(const Cell& f) const {
   const auto& p = choice_.parameters;
   const Vec2 force = choice_.force ? Vec2(p.force_x, p.force_y) : Vec2(0.0, 0.0);
@@ -144,10 +157,7 @@ Cell NaiveLattice::fluid(const Cell& f) const {
   const Vec2 u = (m.j + 0.5 * force) / m.rho;
   const Cell eq = naive_equilibrium(m.rho, u), s = source(force, u);
   const Eigen::Matrix2d q = stress(f, eq, force, u);
-  double tau = p.tau;
-  if (choice_.turbulence == "smagorinsky")
-    tau = 0.5 * (tau + std::sqrt(tau * tau + 18.0 * p.smagorinsky * p.smagorinsky * std::sqrt(2.0) *
-                                                 q.norm() / m.rho));
+  const double tau = this->tau(f);
   if (choice_.collision == "central_moment") return central_moments(f, m.rho, u, force, 1.0 / tau);
   if (choice_.collision == "recursive_regularised")
     return recursive_regularised(m.rho, u, q, s, 1.0 / tau);
@@ -170,11 +180,14 @@ Cell NaiveLattice::collided(int x, int y) {
   const Cell eq = naive_equilibrium(m.rho, m.j / m.rho);  // without the body force
   const Cell omega_s = c.weight > 0.0 ? solid_term(f, eq, m.rho, c) : Cell{};
   const Cell post = fluid(f);
+  double weight = c.weight;
+  if (choice_.turbulence == "smagorinsky")  // B(ε, τ*) of this cell, or B = ε
+    weight = lbm::ImmersedWeight{choice_.weight, tau(f)}(weight);
   Cell out;
   Vec2 gain(0.0, 0.0);
   for (int i = 0; i < 9; ++i) {
-    out[i] = f[i] + (1.0 - c.weight) * (post[i] - f[i]) + c.weight * omega_s[i];
-    gain += c.weight * omega_s[i] * direction(i);
+    out[i] = f[i] + (1.0 - weight) * (post[i] - f[i]) + weight * omega_s[i];
+    gain += weight * omega_s[i] * direction(i);
   }
   force_[y * domain_.nx + x] = -gain;
   return out;

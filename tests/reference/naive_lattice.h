@@ -16,7 +16,7 @@ using lbm::Vec2;
 
 /// What covers a cell.
 struct NaiveCover {
-  double weight = 0.0;  ///< B; 0: pure fluid
+  double weight = 0.0;  ///< B, with a turbulence model the solid fraction; 0: pure fluid
   bool whole = false;   ///< covered whole
   bool core = false;    ///< deep inside
   Vec2 velocity{0.0, 0.0};
@@ -40,6 +40,8 @@ class NaiveLattice {
   Cell collided(int x, int y);
   /// Post-collision populations of pure fluid.
   Cell fluid(const Cell& f) const;
+  /// Relaxation time with the eddy viscosity.
+  double tau(const Cell& f) const;
   Cell solid_term(const Cell& f, const Cell& eq_fluid, double rho, const NaiveCover& c) const;
   void stream(int x, int y, const Cell& f, std::vector<Cell>& next) const;
 

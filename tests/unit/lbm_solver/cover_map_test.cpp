@@ -35,10 +35,13 @@ Fluid stirred(std::vector<Disc> discs) {
 }
 
 TEST(ImmersedWeight, HasItsLimits) {
-  EXPECT_EQ(immersed_weight(0.0, 0.8), 0.0);
-  EXPECT_EQ(immersed_weight(1.0, 0.8), 1.0);
-  EXPECT_EQ(immersed_weight(1.7, 0.8), 1.0);  // the sum of two solids may exceed one
-  EXPECT_NEAR(immersed_weight(0.5, 0.8), 0.5 * 0.3 / 0.8, 1e-15);
+  const ImmersedWeight viscous{WeightRule::Viscous, 0.8}, fraction{WeightRule::Fraction};
+  EXPECT_EQ(viscous(0.0), 0.0);
+  EXPECT_EQ(viscous(1.0), 1.0);
+  EXPECT_EQ(viscous(1.7), 1.0);  // the sum of two solids may exceed one
+  EXPECT_EQ(fraction(1.7), 1.0);
+  EXPECT_NEAR(viscous(0.5), 0.5 * 0.3 / 0.8, 1e-15);
+  EXPECT_EQ(fraction(0.3), 0.3);
 }
 
 TEST(CoverMap, LoadsOfSharedCellsAddUpToTheWholeForce) {
@@ -67,7 +70,7 @@ TEST(CoverMap, LoadsDoNotDependOnTheOrderOfTheDiscs) {
 }
 
 TEST(CoverMap, DiscsComeAndGo) {
-  CoverMap cover(kDomain, 0.8);
+  CoverMap cover(kDomain, {WeightRule::Viscous, 0.8});
   cover.update({});
   EXPECT_EQ(cover.covered_blocks(), 0U);
   const auto discs = cluster();
@@ -82,7 +85,7 @@ TEST(CoverMap, DiscsComeAndGo) {
 }
 
 TEST(CoverMap, NextCoveredSkipsPureFluid) {
-  CoverMap cover(kDomain, 0.8);
+  CoverMap cover(kDomain, {WeightRule::Viscous, 0.8});
   cover.update(std::vector<Disc>{{1, {40.5, 20.0}, 2.0, {0, 0}, 0}});
   EXPECT_EQ(cover.next_covered(20, 0), 38 / kPackWidth);
   EXPECT_EQ(cover.next_covered(3, 0), cover.blocks_per_row());

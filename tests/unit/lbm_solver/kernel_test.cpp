@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/fluid.h"
 #include "tests/reference/naive_lattice.h"
 
@@ -80,19 +81,24 @@ double largest_force_difference(const CoverMap& cover, const Domain& d, test::Na
 
 std::vector<KernelChoice> all_rows() {
   std::vector<KernelChoice> rows;
-  std::vector<std::string> terms = known_solid_terms();
-  terms.insert(terms.begin(), "none");
+  struct Solids {
+    std::string term;
+    WeightRule weight = WeightRule::Viscous;
+  };
+  std::vector<Solids> all_solids{{"none"}, {"noble_torczynski", WeightRule::Fraction}};
+  for (const std::string& term : known_solid_terms()) all_solids.push_back({term});
   for (const std::string& collision : known_collisions())
     for (const char* turbulence : {"none", "smagorinsky"})
       for (const bool force : {false, true})
-        for (const std::string& term : terms)
-          rows.push_back({collision, turbulence, force, term, {kTau, kMagic, 0.17, 2e-4, -1e-4}});
+        for (const auto& [term, weight] : all_solids)
+          rows.push_back(
+              {collision, turbulence, force, term, {kTau, kMagic, 0.17, 2e-4, -1e-4}, weight});
   return rows;
 }
 
 std::string name_of(const KernelChoice& c) {
   return c.collision + (c.turbulence == "none" ? "" : "_les") + (c.force ? "_force" : "") + "_" +
-         c.solid_term;
+         c.solid_term + (c.weight == WeightRule::Fraction ? "_fraction" : "");
 }
 
 class KernelTest : public testing::TestWithParam<KernelChoice> {};
@@ -129,13 +135,21 @@ TEST_P(KernelTest, EqualsTheNaiveReference) {
 INSTANTIATE_TEST_SUITE_P(Table, KernelTest, testing::ValuesIn(all_rows()),
                          [](const auto& info) { return name_of(info.param); });
 
+TEST(KernelTable, NamesTheSolidTermsWhereOneIsMissing) {
+  try {
+    make_kernel({"trt", "none", false, "ladd", {}});
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("superposition"), std::string::npos) << e.what();
+  }
+}
+
 TEST(KernelTable, NamesItsRowsWhereOneIsMissing) {
   try {
     make_kernel({"mrt", "none", false, "holdych", {}});
     FAIL();
   } catch (const std::invalid_argument& e) {
-    EXPECT_NE(std::string(e.what()).find("trt + laminar + no force + layered_holdych"),
-              std::string::npos)
+    EXPECT_NE(std::string(e.what()).find("trt + laminar + no force + solids"), std::string::npos)
         << e.what();
   }
 }
