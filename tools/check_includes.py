@@ -27,7 +27,7 @@ ONLY = {
     "atom.h": r"liggghts_coupling/host/.*",
     "fix.h": r"liggghts_coupling/host/.*",
     "toml++": r"lbm_solver/io/.*",
-    "Eigen": r"lbm_solver/base/units\.h",
+    "Eigen": r"lbm_solver/(base/units|immersed/marked_bodies)\.h",
 }
 
 

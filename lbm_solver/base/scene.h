@@ -40,9 +40,13 @@ struct BoundaryScene {
   double frequency = 0.0;  ///< velocity × cos(2 pi f t) [Hz]
 };
 
-/// A solid at rest: a disc (curved, with force and torque) or a block of whole cells.
+/// A solid that stays where it is: a disc (curved, with force and torque) or a block of whole
+/// cells.
 struct ObstacleScene {
   bool disc = false;
+  bool hollow = false;  ///< a disc whose outside is solid
+  bool grain = false;   ///< one of a file of many: its load is not listed by itself
+  double spin = 0.0;    ///< of a disc [rad/s]
   Vec2 centre{0.0, 0.0};
   double diameter = 0.0;              ///< [m]
   Vec2 from{0.0, 0.0}, to{0.0, 0.0};  ///< corners of a block [m]
@@ -70,14 +74,17 @@ struct NumericsScene {
   std::optional<double> time_step;           ///< fluid step [s]; absent: chosen by rule
   std::string collision = "auto";            ///< see solver/plan.h for what auto takes
   std::string solid_term = "auto";
+  std::string scheme = "auto";      ///< one of known_schemes()
+  double spring_stiffness = 0.001;  ///< of the spring scheme, lattice units
   bool weight_is_fraction = false;  ///< B = ε instead of B(ε, τ)
   double magic = 3.0 / 16.0;        ///< Λ of TRT
   double smagorinsky = 0.0;         ///< S_c; 0: no turbulence model
 };
 
 struct ParticleScene {
-  Range diameter;           ///< [m]
-  Range density;            ///< [kg/m^3]
+  Range diameter;                            ///< [m]
+  Range density;                             ///< [kg/m^3]
+  std::vector<double> hydraulic_ratio{1.0};  ///< radius that the fluid sees / radius, a type each
   std::vector<Vec2> start;  ///< centres [m], offered to the script as particle_x …
   std::optional<double> contact_stiffness;       ///< [N/m]; bounds the solid's step
   std::map<std::string, std::string> variables;  ///< further names for the script
@@ -88,7 +95,9 @@ struct CouplingScene {
   std::optional<int> substeps;  ///< solid steps a coupling interval; absent: from the stiffness
   bool inner_inertia = true;    ///< correct for the inertia of the fluid inside a particle
   protocol::Buoyancy buoyancy = protocol::Buoyancy::ByFluid;
-  double timeout = 300.0;  ///< longest wait for the solid [s]
+  std::optional<double> virtual_mass;  ///< over displaced mass; absent: where particles are light
+  double lubrication_range = 0.0;      ///< gap below which it acts [cells]; 0: off
+  double timeout = 300.0;              ///< longest wait for the solid [s]
 };
 
 struct OutputScene {

@@ -17,7 +17,8 @@ class CentralMoments {
   explicit CentralMoments(const CollisionParameters& p)
       : turbulence_(p), force_(p), parameters_(p) {}
 
-  static constexpr bool turbulent = Turbulence::on;
+  static constexpr bool turbulent = Turbulence::on, forced = Force::on;
+  const Force& force() const { return force_; }
   template <class V>
   [[gnu::always_inline]] V relaxation_time(const V (&f)[D2Q9::Q], const Moments<V>& m) const {
     return turbulent_tau(f, m, turbulence_, force_);

@@ -17,7 +17,8 @@ class RecursiveRegularised {
   static constexpr bool constant_rates = false;  ///< see TwoRates
   explicit RecursiveRegularised(const CollisionParameters& p) : turbulence_(p), force_(p) {}
 
-  static constexpr bool turbulent = Turbulence::on;
+  static constexpr bool turbulent = Turbulence::on, forced = Force::on;
+  const Force& force() const { return force_; }
   template <class V>
   [[gnu::always_inline]] V relaxation_time(const V (&f)[D2Q9::Q], const Moments<V>& m) const {
     return turbulent_tau(f, m, turbulence_, force_);

@@ -45,7 +45,8 @@ class TwoRates {
   double even_rate() const { return even_rate_; }
   double odd_rate() const { return odd_rate_; }
 
-  static constexpr bool turbulent = Turbulence::on;
+  static constexpr bool turbulent = Turbulence::on, forced = Force::on;
+  const Force& force() const { return force_; }
   template <class V>
   [[gnu::always_inline]] V relaxation_time(const V (&f)[D2Q9::Q], const Moments<V>& m) const {
     return turbulent_tau(f, m, turbulence_, force_);

@@ -49,8 +49,8 @@ Observers::Observers(const Scene& scene, const Plan& plan, const std::string& fo
   if (scene.coupling) probes_.emplace(folder);
   if (!scene.output.points.empty())
     points_.emplace(folder + "/points.csv", "time,x,y,pressure,ux,uy", keep);
-  if (!obstacle_discs(scene, plan).empty())
-    obstacles_.emplace(folder + "/obstacles.csv", "time,obstacle,fx,fy,torque", keep);
+  if (!obstacle_discs(scene, plan).empty()) obstacles_.emplace(scene, plan, folder, keep);
+  if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);
   if (scene.output.fields_every > 0.0) fields_.emplace(folder, plan.units, keep);
 }
 
@@ -82,10 +82,11 @@ void Observers::at_end(std::int64_t interval, Fluid& fluid, const Particles* par
 }
 
 std::vector<double> Observers::state() const {
-  std::vector<double> s{next_probe_,        next_field_,  max_speed_,
-                        first_mass_excess_, mass_excess_, static_cast<double>(obstacle_steps_)};
-  for (const DiscLoad& sum : obstacle_sums_)
-    s.insert(s.end(), {sum.force.x(), sum.force.y(), sum.torque});
+  std::vector<double> s{next_probe_, next_field_, max_speed_, first_mass_excess_, mass_excess_};
+  if (obstacles_) {
+    const std::vector<double> loads = obstacles_->state();
+    s.insert(s.end(), loads.begin(), loads.end());
+  }
   return s;
 }
 
@@ -95,19 +96,7 @@ void Observers::restore(const std::vector<double>& s) {
   max_speed_ = s.at(2);
   first_mass_excess_ = s.at(3);
   mass_excess_ = s.at(4);
-  obstacle_steps_ = static_cast<int>(s.at(5));
-  obstacle_sums_.clear();
-  for (std::size_t i = 6; i + 2 < s.size(); i += 3)
-    obstacle_sums_.push_back({{s[i], s[i + 1]}, s[i + 2]});
-}
-
-void Observers::add_loads(std::span<const DiscLoad> loads) {
-  obstacle_sums_.resize(loads.size());
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    obstacle_sums_[i].force += loads[i].force;
-    obstacle_sums_[i].torque += loads[i].torque;
-  }
-  ++obstacle_steps_;
+  if (obstacles_) obstacles_->restore(std::span(s).subspan(5));
 }
 
 void Observers::write_probes(double time, const Fluid& fluid, const Particles* particles,
@@ -123,39 +112,7 @@ void Observers::write_probes(double time, const Fluid& fluid, const Particles* p
     }
     points_->flush();
   }
-  if (obstacles_ && obstacle_steps_ > 0) {
-    for (std::size_t i = 0; i < obstacle_sums_.size(); ++i) {
-      const DiscLoad& sum = obstacle_sums_[i];
-      const double force = plan_.units.force() / obstacle_steps_;
-      obstacles_->row({time, static_cast<double>(i + 1), sum.force.x() * force,
-                       sum.force.y() * force, sum.torque * force * plan_.units.dx});
-    }
-    obstacles_->flush();
-    obstacle_sums_.assign(obstacle_sums_.size(), DiscLoad{});
-    obstacle_steps_ = 0;
-  }
-}
-
-/// Compares the velocity field with that of the guard before: largest change over largest velocity,
-/// a unit of box length over velocity scale.
-void Observers::watch_change(Fluid& fluid) {
-  const int nx = plan_.domain.nx, ny = plan_.domain.ny;
-  std::vector<double> rho(nx), now(2 * static_cast<std::size_t>(nx) * ny);
-  double largest = 0.0, change = 0.0;
-  for (int y = 0; y < ny; ++y) {
-    const std::span row(now.data() + 2 * static_cast<std::size_t>(nx) * y, 2 * nx);
-    fluid.row(y, rho, row.first(nx), row.last(nx));
-  }
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    largest = std::max(largest, std::abs(now[i]));
-    if (!velocity_before_.empty())
-      change = std::max(change, std::abs(now[i] - velocity_before_[i]));
-  }
-  const double turnover = std::max(nx, ny) * plan_.lattice_speed / scene_.fluid.velocity_scale;
-  const double rate =
-      change / largest * turnover / static_cast<double>(guard_every_ * plan_.fluid_steps);
-  steady_ = !velocity_before_.empty() && largest > 0.0 && rate < scene_.steady_below;
-  velocity_before_ = std::move(now);
+  if (obstacles_) obstacles_->write(time);
 }
 
 void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* particles) {
@@ -171,7 +128,7 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* part
   max_speed_ = std::max(max_speed_, e.max_speed);
   mass_excess_ = e.mass_excess;
   for (const auto& patch : fluid.patches()) mass_excess_ -= patch->mass_in();
-  if (scene_.steady_below > 0.0) watch_change(fluid);
+  if (steady_) steady_->look(fluid);
   if (std::max(e.max_speed, particle) <= kStopSpeed) return;
   const bool by_fluid = e.max_speed > particle;
   const double speed = std::max(e.max_speed, particle);
@@ -194,8 +151,8 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
       frame.velocity.push_back(static_cast<float>(ux[x] * plan_.units.velocity()));
       frame.velocity.push_back(static_cast<float>(uy[x] * plan_.units.velocity()));
       frame.velocity.push_back(0.0F);
-      if (fluid.cover())
-        frame.solid_fraction.push_back(static_cast<float>(fluid.cover()->solid_fraction(x, y)));
+      if (fluid.has_solids())
+        frame.solid_fraction.push_back(static_cast<float>(fluid.solid_fraction(x, y)));
     }
   }
   if (particles)

@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "lbm_solver/coupling/obstacle_loads.h"
 #include "lbm_solver/coupling/particles.h"
+#include "lbm_solver/coupling/steady_watch.h"
 #include "lbm_solver/io/field_writer.h"
 #include "lbm_solver/io/log.h"
 #include "lbm_solver/io/probe_writer.h"
@@ -46,9 +48,9 @@ class Observers {
   /// At the last state, which has no loads.
   void at_end(std::int64_t interval, Fluid& fluid, const Particles* particles);
   /// After each fluid step of a scene with obstacles: loads in the order of obstacle_discs.
-  void add_loads(std::span<const DiscLoad> loads);
+  void add_loads(std::span<const DiscLoad> loads) { obstacles_->add(loads); }
   /// A fluid alone whose velocity no longer changes (run.steady_below).
-  bool steady() const { return steady_; }
+  bool steady() const { return steady_ && steady_->steady(); }
 
   Summary summary(double wall_seconds) const;
 
@@ -56,18 +58,15 @@ class Observers {
   void guard(std::int64_t interval, Fluid& fluid, const Particles* particles);
   void write_fields(double time, Fluid& fluid, const Particles* particles);
   void write_probes(double time, const Fluid& fluid, const Particles* particles, bool last);
-  void watch_change(Fluid& fluid);
   void report_progress(std::int64_t interval);
 
   const Scene& scene_;
   const Plan& plan_;
   Log& log_;
-  std::optional<ProbeWriter> probes_;            // particles
-  std::optional<CsvWriter> points_, obstacles_;  // places, and loads on obstacles
-  std::vector<DiscLoad> obstacle_sums_;          // since the last line
-  int obstacle_steps_ = 0;
-  std::vector<double> velocity_before_;  // x, y of every cell, for steady()
-  bool steady_ = false;
+  std::optional<ProbeWriter> probes_;  // particles
+  std::optional<CsvWriter> points_;
+  std::optional<ObstacleLoads> obstacles_;
+  std::optional<SteadyWatch> steady_;
   std::optional<FieldWriter> fields_;
   std::int64_t guard_every_, intervals_done_ = 0;
   double next_probe_ = 0.0, next_field_ = 0.0;

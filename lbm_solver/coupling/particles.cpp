@@ -7,26 +7,58 @@
 
 namespace lbm {
 
-Particles::Particles(const Units& units, const FluidScene& fluid, const CouplingScene& coupling)
-    : units_(units), fluid_(fluid), coupling_(coupling) {}
+namespace {
+
+constexpr double kAverage = 0.2;  // weight of the latest interval in a mean acceleration
+
+}  // namespace
+
+Particles::Particles(const Units& units, const Scene& scene)
+    : units_(units),
+      fluid_(scene.fluid),
+      coupling_(*scene.coupling),
+      hydraulic_ratio_(scene.particles->hydraulic_ratio) {}
 
 void Particles::arrive(std::span<const protocol::Particle> particles, double interval) {
+  std::unordered_map<std::int64_t, Past> now;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const protocol::State& s = particles_[i].state;
+    const protocol::Load sent = i < loads_.size() ? loads_[i] : protocol::Load{};
+    now.emplace(s.id, Past{{s.v, s.omega}, sent.force, sent.torque, mean_change_[i]});
+  }
+  past_ = std::move(now);
   interval_ = interval;
   particles_.assign(particles.begin(), particles.end());
   change_.assign(particles.size(), Motion{});
-  std::unordered_map<std::int64_t, Motion> now;
+  mean_change_.assign(particles.size(), Motion{});
+  before_.assign(particles.size(), nullptr);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const protocol::State& s = particles[i].state;
-    now.emplace(s.id, Motion{s.v, s.omega});
-    const auto before = before_.find(s.id);
-    if (before == before_.end()) continue;
+    const auto found = past_.find(s.id);
+    if (found == past_.end()) continue;
+    before_[i] = &found->second;
+    const Past& past = found->second;
     for (int k = 0; k < 3; ++k) {
-      change_[i].v[k] = s.v[k] - before->second.v[k];
-      change_[i].omega[k] = s.omega[k] - before->second.omega[k];
+      change_[i].v[k] = s.v[k] - past.motion.v[k];
+      change_[i].omega[k] = s.omega[k] - past.motion.omega[k];
+      mean_change_[i].v[k] = std::lerp(past.mean_change.v[k], change_[i].v[k], kAverage);
+      mean_change_[i].omega[k] =
+          std::lerp(past.mean_change.omega[k], change_[i].omega[k], kAverage);
     }
   }
-  before_ = std::move(now);
+  loads_.clear();
   sums_.assign(particles.size(), DiscLoad{});
+}
+
+double Particles::radius(std::size_t i) const {
+  const auto type = static_cast<std::size_t>(std::max<std::int64_t>(1, particles_[i].shape.type));
+  return particles_[i].shape.radius * hydraulic_ratio_[std::min(type, hydraulic_ratio_.size()) - 1];
+}
+
+std::vector<double> Particles::masses() const {
+  std::vector<double> masses;
+  for (const auto& p : particles_) masses.push_back(p.shape.mass / units_.mass());
+  return masses;
 }
 
 std::span<const Disc> Particles::discs(double elapsed) {
@@ -35,7 +67,7 @@ std::span<const Disc> Particles::discs(double elapsed) {
     const protocol::State& s = particles_[i].state;
     const Vec2 velocity(s.v[0], s.v[1]);
     const Vec2 centre = Vec2(s.x[0], s.x[1]) + elapsed * velocity;
-    discs_[i] = {s.id, units_.to_lattice_position(centre), particles_[i].shape.radius / units_.dx,
+    discs_[i] = {s.id, units_.to_lattice_position(centre), radius(i) / units_.dx,
                  units_.to_lattice_velocity(velocity), units_.to_lattice_spin(s.omega[2])};
   }
   return discs_;
@@ -52,21 +84,52 @@ protocol::Load Particles::hydrodynamic(std::size_t i, int steps) const {
   const Vec2 force = sums_[i].force * (units_.force() / steps);
   const double torque = sums_[i].torque * (units_.torque() / steps);
   protocol::Load load{particles_[i].state.id, {force.x(), force.y(), 0.0}, {0.0, 0.0, torque}};
-  const double radius = particles_[i].shape.radius;
-  const double fluid_mass = fluid_.density * std::numbers::pi * radius * radius * units_.depth;
+  const double r = radius(i), fluid_mass = displaced_mass(i);
   if (coupling_.inner_inertia) {
-    const double fluid_inertia = 0.5 * fluid_mass * radius * radius;
-    for (int k = 0; k < 2; ++k) load.force[k] += fluid_mass * change_[i].v[k] / interval_;
-    load.torque[2] += fluid_inertia * change_[i].omega[2] / interval_;
+    const double fluid_inertia = 0.5 * fluid_mass * r * r;
+    const Motion& change = virtual_mass(i) > 0.0 ? mean_change_[i] : change_[i];
+    for (int k = 0; k < 2; ++k) load.force[k] += fluid_mass * change.v[k] / interval_;
+    load.torque[2] += fluid_inertia * change.omega[2] / interval_;
   }
   if (coupling_.buoyancy == protocol::Buoyancy::ByFluid)
     for (int k = 0; k < 2; ++k) load.force[k] -= fluid_mass * fluid_.gravity[k];
   return load;
 }
 
+double Particles::displaced_mass(std::size_t i) const {
+  const double r = radius(i);
+  return fluid_.density * std::numbers::pi * r * r * units_.depth;
+}
+
+double Particles::virtual_mass(std::size_t i) const {
+  if (coupling_.virtual_mass) return *coupling_.virtual_mass;
+  return particles_[i].shape.mass < kLightRatio * displaced_mass(i) ? kVirtualMass : 0.0;
+}
+
+void Particles::add_virtual_mass(std::size_t i, protocol::Load& load) const {
+  const protocol::Shape& shape = particles_[i].shape;
+  const double mass = virtual_mass(i) * displaced_mass(i), r = radius(i);
+  if (mass == 0.0) return;
+  const auto blend = [](double load, double acceleration, double others, double own, double extra) {
+    return (own * (load + extra * acceleration) - extra * others) / (own + extra);
+  };
+  for (int k = 0; k < 2; ++k) {
+    const double acceleration = change_[i].v[k] / interval_;
+    const double others = before_[i] ? shape.mass * acceleration - before_[i]->force[k]
+                                     : shape.mass * fluid_.gravity[k];
+    load.force[k] = blend(load.force[k], acceleration, others, shape.mass, mass);
+  }
+  const double spin_up = change_[i].omega[2] / interval_;
+  const double others = before_[i] ? shape.inertia * spin_up - before_[i]->torque[2] : 0.0;
+  load.torque[2] = blend(load.torque[2], spin_up, others, shape.inertia, 0.5 * mass * r * r);
+}
+
 std::span<const protocol::Load> Particles::mean_loads(int steps) {
   loads_.resize(particles_.size());
-  for (std::size_t i = 0; i < particles_.size(); ++i) loads_[i] = hydrodynamic(i, steps);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    loads_[i] = hydrodynamic(i, steps);
+    add_virtual_mass(i, loads_[i]);
+  }
   return loads_;
 }
 

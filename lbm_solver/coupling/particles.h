@@ -11,16 +11,32 @@
 
 namespace lbm {
 
+/// Particles lighter than this times the fluid get a virtual mass unless the scene says otherwise,
+/// and how much of it, over the mass that they displace.
+inline constexpr double kLightRatio = 0.9, kVirtualMass = 2.0;
+
 /// The solid's particles between wire and lattice: SI states in, discs in lattice units out,
 /// lattice loads in, SI loads out.
 ///
 /// The force that a covered region receives from the lattice includes the change of momentum of the
 /// fluid inside it, m_f dU/dt. The solid integrates its own mass only, so that part is given back:
 ///   F = mean(F_lattice) + m_f (U_k - U_{k-1})/T + buoyancy,   m_f = rho_f pi R² depth,
-///   T = mean(T_lattice) + I_f (ω_k - ω_{k-1})/T,              I_f = ½ m_f R².
+///   T = mean(T_lattice) + I_f (ω_k - ω_{k-1})/T,              I_f = ½ m_f R²,
+/// with R the radius that the fluid sees (`hydraulic_ratio` times the particle's).
+///
+/// A light particle answers a change of load with a large acceleration, which the fluid answers a
+/// step later: explicit coupling blows up. With a virtual mass m_v on both sides of its equation of
+/// motion, (m_s + m_v) dU/dt = F + G + m_v dU/dt, the right one taken from the last interval, the
+/// load to send is
+///   F' = (m_s (F + m_v (U_k - U_{k-1})/T) - m_v G) / (m_s + m_v),
+/// where G, everything else that acts on the particle, is what the last interval shows:
+/// G = m_s (U_k - U_{k-1})/T - F'_{k-1}. Where nothing changes in time, F' = F. The inner fluid's
+/// m_f dU/dt of such a particle takes the mean acceleration over some five intervals: surface cells
+/// follow a change more slowly than that term gives it back, which alone blows up below
+/// rho_s/rho_f = 0.25. Proven down to 0.1.
 class Particles {
  public:
-  Particles(const Units& units, const FluidScene& fluid, const CouplingScene& coupling);
+  Particles(const Units& units, const Scene& scene);
 
   /// Takes the particles of a new interval of `interval` seconds.
   void arrive(std::span<const protocol::Particle> particles, double interval);
@@ -30,6 +46,9 @@ class Particles {
 
   /// Where the discs are `elapsed` seconds after the interval began, moving on straight.
   std::span<const Disc> discs(double elapsed);
+
+  /// Masses of the discs, lattice units.
+  std::vector<double> masses() const;
 
   /// Adds the loads of one fluid step.
   void add(std::span<const DiscLoad> loads);
@@ -45,15 +64,28 @@ class Particles {
   struct Motion {
     protocol::Vec3 v, omega;
   };
+  /// What is kept of a particle from one interval to the next.
+  struct Past {
+    Motion motion;
+    protocol::Vec3 force, torque;  ///< as sent
+    Motion mean_change;            ///< see mean_change_
+  };
+  double radius(std::size_t i) const;          // that the fluid sees [m]
+  double displaced_mass(std::size_t i) const;  // of fluid [kg]
   protocol::Load hydrodynamic(std::size_t i, int steps) const;
+  double virtual_mass(std::size_t i) const;  // over the displaced mass
+  void add_virtual_mass(std::size_t i, protocol::Load& load) const;
 
   Units units_;
   FluidScene fluid_;
   CouplingScene coupling_;
+  std::vector<double> hydraulic_ratio_;
   double interval_ = 0.0;
   std::vector<protocol::Particle> particles_;
   std::vector<Motion> change_;  // of velocities since the interval before; 0 for a new particle
-  std::unordered_map<std::int64_t, Motion> before_;
+  std::vector<Motion> mean_change_;  // of the last intervals, the latest with weight kAverage
+  std::unordered_map<std::int64_t, Past> past_;
+  std::vector<const Past*> before_;  // [particle], null for a new one
   std::vector<Disc> discs_;
   std::vector<DiscLoad> sums_;
   std::vector<protocol::Load> loads_;

@@ -85,6 +85,8 @@ std::string describe(const Scene& s, const Plan& p) {
                      p.substep_limit));
   if (!p.collision_reason.empty())
     line("collision", fmt::format("{} [{}]", p.kernel.collision, p.collision_reason));
+  if (!p.solid_reason.empty())
+    line("solids", fmt::format("{}, {} [{}]", p.scheme, p.kernel.solid_term, p.solid_reason));
   line("duration", fmt::format("{:.6g} s = {} intervals", s.end_time, p.intervals));
   for (const std::string& w : p.warnings) line("warning", w);
   return out;
@@ -102,9 +104,12 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   part(s.box.pressure_jump.norm() > 0.0, "pressure jump", "pressure jump");
   part(p.kernel.force, "body force", "body force");
   part(p.kernel.turbulence != "none", "Smagorinsky turbulence", "turbulence model");
-  part(p.kernel.solid_term != "none",
-       "covered cells " + p.kernel.solid_term +
-           (p.kernel.weight == WeightRule::Viscous ? " with B(ε,τ), loads" : " with B = ε, loads"),
+  const bool imb = p.scheme == known_schemes().front();
+  part(p.kernel.solid_term != "none" || !imb,
+       imb ? "covered cells " + p.kernel.solid_term +
+                 (p.kernel.weight == WeightRule::Viscous ? " with B(ε,τ)" : " with B = ε") +
+                 ", loads"
+           : p.scheme + ", loads",
        "solids");
   part(!s.obstacles.empty(), fmt::format("{} obstacles at rest", s.obstacles.size()), "obstacles");
   part(s.coupling.has_value(), "solid program", "solid program");
@@ -113,6 +118,7 @@ std::string describe_cost(const Scene& s, const Plan& p) {
     part(s.coupling->buoyancy != protocol::Buoyancy::None,
          std::string("buoyancy ") + buoyancy_text(s.coupling->buoyancy), "buoyancy");
   }
+  if (s.coupling) part(s.coupling->lubrication_range > 0.0, "lubrication", "lubrication");
   Fluid fluid = make_fluid(s, p);
   std::vector<Disc> discs;
   if (s.coupling) {

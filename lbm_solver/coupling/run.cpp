@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <ctime>
+#include <limits>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/io/checkpoint.h"
 #include "protocol/program.h"
 
@@ -40,7 +42,11 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
   Fluid fluid = make_fluid(scene, plan);
   std::vector<Disc> discs = obstacle_discs(scene, plan);  // obstacles first, then the particles
   const std::size_t obstacles = discs.size();
-  Particles particles(plan.units, scene.fluid, *scene.coupling);
+  Particles particles(plan.units, scene);
+  const Lubrication lubrication{(plan.kernel.parameters.tau - 0.5) / 3.0,
+                                scene.coupling->lubrication_range,
+                                static_cast<double>(plan.fluid_steps)};
+  std::vector<double> masses;
   const protocol::Hello& partner = solid.agree();
   log.say(0, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s", partner.program,
           partner.program_version, plan.substeps, plan.interval());
@@ -69,8 +75,14 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
       clock.charge("placing");
       fluid.step();
       clock.charge("sweep");
-      const std::vector<DiscLoad> loads = fluid.loads();
-      const std::span all(loads);
+      std::vector<DiscLoad> loads = fluid.loads();
+      if (lubrication.range > 0.0) {
+        masses.resize(obstacles, std::numeric_limits<double>::infinity());
+        const std::vector<double> moving_masses = particles.masses();
+        masses.insert(masses.end(), moving_masses.begin(), moving_masses.end());
+        lubrication.add(discs, masses, plan.domain, loads);
+      }
+      const std::span<const DiscLoad> all(loads);
       if (obstacles > 0) observers.add_loads(all.first(obstacles));
       particles.add(all.subspan(obstacles));
       clock.charge("loads");

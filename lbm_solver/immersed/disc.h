@@ -13,7 +13,8 @@ struct Disc {
   Vec2 centre{0.0, 0.0};
   double radius = 0.0;
   Vec2 velocity{0.0, 0.0};
-  double spin = 0.0;  ///< [rad / step]
+  double spin = 0.0;    ///< [rad / step]
+  bool hollow = false;  ///< the solid is everything outside of the circle
 };
 
 /// Force and torque on a disc about its centre, lattice units.

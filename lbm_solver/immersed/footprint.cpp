@@ -26,17 +26,44 @@ Images images(double at, double radius, int n, Side side) {
 }  // namespace
 
 bool Footprint::update(const Disc& disc, const Domain& domain) {
-  if (disc.centre == centre_ && disc.radius == radius_) return false;
+  if (disc.centre == centre_ && disc.radius == radius_ && disc.hollow == hollow_) return false;
   centre_ = disc.centre;
   radius_ = disc.radius;
+  hollow_ = disc.hollow;
   spans_.clear();
   fractions_.clear();
+  if (disc.hollow) {
+    add_outside(disc.centre, disc.radius, domain);
+    return true;
+  }
   const Images x = images(disc.centre.x(), disc.radius, domain.nx, domain.x);
   const Images y = images(disc.centre.y(), disc.radius, domain.ny, domain.y);
   for (int j = 0; j < y.count; ++j)
     for (int i = 0; i < x.count; ++i)
       add_image({x.first + i * domain.nx, y.first + j * domain.ny}, disc.radius, domain);
   return true;
+}
+
+/// All cells, with what the circle leaves of them; no images.
+void Footprint::add_outside(const Vec2& centre, double radius, const Domain& domain) {
+  const int blocks = (domain.nx + kPackWidth - 1) / kPackWidth;
+  const Pack core(radius + kCoreDepth), full(radius + kHalfDiagonal);
+  for (int y = 0; y < domain.ny; ++y) {
+    const double dy = y + 0.5 - centre.y();
+    for (int k = 0; k < blocks; ++k) {
+      const double first_arm = k * kPackWidth + 0.5 - centre.x();
+      const Pack dx = Pack(first_arm) + lane_numbers(), distance2 = dx * dx + Pack(dy * dy);
+      Pack fraction = Pack(1.0) - disc_fraction(dx, Pack(dy), radius);
+      where(distance2 > full * full, fraction) = Pack(1.0);
+      where(Pack(k * kPackWidth) + lane_numbers() >= Pack(domain.nx), fraction) = Pack(0.0);
+      if (all_of(fraction == Pack(0.0))) continue;
+      const int eps = static_cast<int>(fractions_.size());
+      fractions_.resize(fractions_.size() + kPackWidth);
+      store(&fractions_[eps], fraction);
+      const bool deep = all_of(distance2 > core * core);
+      spans_.push_back({y, k, 1, eps, 0, deep ? kPackWidth : 0, first_arm, dy});
+    }
+  }
 }
 
 void Footprint::add_image(const Vec2& centre, double radius, const Domain& domain) {

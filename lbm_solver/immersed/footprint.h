@@ -44,8 +44,10 @@ class Footprint {
 
  private:
   void add_image(const Vec2& centre, double radius, const Domain& domain);
+  void add_outside(const Vec2& centre, double radius, const Domain& domain);
   Vec2 centre_{0.0, 0.0};
   double radius_ = -1.0;
+  bool hollow_ = false;
   std::vector<Span> spans_;
   std::vector<double> fractions_;
 };

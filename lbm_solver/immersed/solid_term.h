@@ -76,7 +76,9 @@ class TwoEquilibria {
 /// with Ω of any collision operator. The force on the solid is the momentum that the cell loses to
 /// Ω^s,
 ///   F = -B Σ c_i Ω_i^s = k B rho (u - u_s),   rho u = j without any body force,
-/// an identity that holds to round-off, so no sum over directions is needed.
+/// an identity that holds to round-off, so no sum over directions is needed. A body force G acts on
+/// the fluid's part only; the solid's part, B G, is a force on the solid, as if a pressure gradient
+/// drove the fluid.
 class CoveredCollision {
  public:
   CoveredCollision(const SolidTerm& term, WeightRule rule)
@@ -161,7 +163,12 @@ class CoveredCollision {
         f[i + 1] = rest * fluid[i + 1] + even_part - odd_part;
       });
     }
-    return {strength * (ux - cell.us), strength * (uy - cell.vs)};
+    Force<V> force{strength * (ux - cell.us), strength * (uy - cell.vs)};
+    if constexpr (Collision::forced) {
+      force.x += weight * V(collide.force().x());
+      force.y += weight * V(collide.force().y());
+    }
+    return force;
   }
 
  private:

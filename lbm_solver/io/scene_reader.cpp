@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/table_reader.h"
@@ -85,6 +87,11 @@ NumericsScene read_numerics(TableReader t) {
   n.solid_term =
       t.choice_or("solid_term", n.solid_term,
                   {"auto", "layered_holdych", "holdych", "noble_torczynski", "superposition"});
+  n.scheme =
+      t.choice_or("scheme", n.scheme,
+                  {"auto", "immersed_moving_boundary", "bounce_back", "interpolated_bounce_back",
+                   "implicit_immersed_boundary", "spring_immersed_boundary"});
+  n.spring_stiffness = t.number_or("spring_stiffness", n.spring_stiffness, Bounds::positive(), "");
   n.weight_is_fraction = t.choice_or("weight", "viscous", {"viscous", "fraction"}) == "fraction";
   n.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
   n.magic = t.number_or("magic", n.magic, {1e-6, 10.0}, "");
@@ -96,6 +103,7 @@ ParticleScene read_particles(TableReader t) {
   ParticleScene p;
   p.diameter = t.range("diameter", Bounds::positive(), "m");
   p.density = t.range("density", Bounds::positive(), "kg/m³");
+  p.hydraulic_ratio = t.numbers_or("hydraulic_ratio", p.hydraulic_ratio, {0.1, 1.0}, "");
   p.start = t.vectors_or_none("start", "[m]");
   p.contact_stiffness = t.optional_number("contact_stiffness", Bounds::positive(), "N/m");
   p.variables = t.optional_table("variables").all_as_text();
@@ -112,6 +120,8 @@ CouplingScene read_coupling(TableReader t) {
   c.buoyancy = by == "fluid"   ? protocol::Buoyancy::ByFluid
                : by == "solid" ? protocol::Buoyancy::BySolid
                                : protocol::Buoyancy::None;
+  c.virtual_mass = t.optional_number("virtual_mass", {0.0, 100.0}, "");
+  c.lubrication_range = t.number_or("lubrication_range", 0.0, {0.0, 10.0}, "cells");
   c.timeout = t.number_or("timeout", c.timeout, Bounds::positive(), "s");
   t.finish();
   return c;
@@ -158,12 +168,40 @@ ObstacleScene read_obstacle(TableReader t) {
   if (o.disc) {
     o.centre = t.vector("centre", "[m]");
     o.diameter = t.number("diameter", Bounds::positive(), "m");
+    o.hollow = t.flag_or("hollow", false);
+    o.spin = t.number_or("spin", 0.0, {}, "rad/s");
   } else {
     o.from = t.vector("from", "[m], or centre and diameter of a disc");
     o.to = t.vector("to", "[m]");
   }
   t.finish();
   return o;
+}
+
+/// Discs at rest from a table `x,y,diameter` in m, beside the scene.
+void read_grains(TableReader t, const std::string& scene_file,
+                 std::vector<ObstacleScene>& obstacles) {
+  const std::string name = t.text_or("file", "");
+  t.finish();
+  if (name.empty()) return;
+  const auto path = std::filesystem::path(scene_file).parent_path() / name;
+  std::ifstream table(path);
+  if (!table) t.fail("file", "= \"" + name + "\" cannot be read", "put it beside the scene");
+  std::string line;
+  std::getline(table, line);
+  if (line != "x,y,diameter")
+    t.fail("file", "begins with '" + line + "'", "the first line is x,y,diameter (in m)");
+  for (int number = 2; std::getline(table, line); ++number) {
+    ObstacleScene o;
+    o.disc = o.grain = true;
+    char rest = 0;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf%c", &o.centre.x(), &o.centre.y(), &o.diameter,
+                    &rest) != 3 ||
+        !(o.diameter > 0.0))
+      t.fail("file", fmt::format("line {}: '{}' is not three numbers", number, line),
+             "give x,y,diameter in m");
+    obstacles.push_back(o);
+  }
 }
 
 InitialScene read_initial(TableReader t) {
@@ -209,6 +247,7 @@ Scene read_scene(const std::vector<std::string>& files) {
   for (const TableReader& t : root.tables("boundary"))
     scene.boundaries.push_back(read_boundary(t, scene.box));
   for (const TableReader& t : root.tables("obstacle")) scene.obstacles.push_back(read_obstacle(t));
+  read_grains(root.optional_table("grains"), files.front(), scene.obstacles);
   scene.initial = read_initial(root.optional_table("initial"));
   TableReader output = root.optional_table("output");
   scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");

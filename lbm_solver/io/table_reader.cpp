@@ -171,6 +171,18 @@ std::vector<Vec2> TableReader::vectors_or_none(const std::string& key, const std
   return result;
 }
 
+std::vector<double> TableReader::numbers_or(const std::string& key,
+                                            const std::vector<double>& fallback,
+                                            const Bounds& bounds, const std::string& unit) {
+  const toml::node* node = find(key);
+  if (!node) return fallback;
+  if (!node->is_array()) return {to_number(*node, key, bounds, unit)};
+  std::vector<double> values;
+  for (const auto& item : *node->as_array()) values.push_back(to_number(item, key, bounds, unit));
+  if (values.empty()) fail(key, "is empty", "give a number or a list of numbers");
+  return values;
+}
+
 Range TableReader::range(const std::string& key, const Bounds& bounds, const std::string& unit) {
   const toml::node& node = need(key, bounds_text(bounds, unit) + ", or [smallest, largest]");
   if (!node.is_array()) {

@@ -50,6 +50,9 @@ class TableReader {
   Vec2 vector(const std::string& key, const std::string& unit);
   Vec2 vector_or(const std::string& key, const Vec2& fallback, const std::string& unit);
   std::vector<Vec2> vectors_or_none(const std::string& key, const std::string& unit);
+  /// A number, or a list of numbers.
+  std::vector<double> numbers_or(const std::string& key, const std::vector<double>& fallback,
+                                 const Bounds& bounds, const std::string& unit);
   /// A number, or [smallest, largest].
   Range range(const std::string& key, const Bounds& bounds, const std::string& unit);
   /// Every key of the table as text; numbers as the shortest text that reads back the same.

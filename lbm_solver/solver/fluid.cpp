@@ -8,6 +8,7 @@
 
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/collision/equilibrium.h"
+#include "lbm_solver/immersed/disc_fraction.h"
 
 namespace lbm {
 
@@ -38,14 +39,31 @@ void Fluid::set_equilibrium(int x, int y, double rho, const Vec2& u) {
 }
 
 void Fluid::place(std::span<const Disc> discs) {
-  BPLBM_EXPECT(cover_ != nullptr);
-  cover_->update(discs);
+  BPLBM_EXPECT(has_solids());
+  if (scheme_)
+    discs_.assign(discs.begin(), discs.end());
+  else
+    cover_->update(discs);
+}
+
+double Fluid::solid_fraction(int x, int y) const {
+  double sum = cover_ ? cover_->solid_fraction(x, y) : 0.0;
+  for (const Disc& disc : discs_) {
+    Vec2 arm = Vec2(x + 0.5, y + 0.5) - disc.centre;
+    if (domain_.x == Side::Periodic) arm.x() -= domain_.nx * std::round(arm.x() / domain_.nx);
+    if (domain_.y == Side::Periodic) arm.y() -= domain_.ny * std::round(arm.y() / domain_.ny);
+    const double fraction = disc_fraction(arm.x(), arm.y(), disc.radius);
+    sum += disc.hollow ? 1.0 - fraction : fraction;
+  }
+  return std::min(1.0, sum);
 }
 
 void Fluid::step() {
+  if (scheme_) scheme_->before_sweep(discs_, f_, stream_);
   kernel_->sweep(f_, stream_, cover_.get());
   stream_.advance();
   ++steps_;
+  if (scheme_) scheme_->after_sweep(f_, stream_);
   for (const auto& patch : patches_) patch->apply(f_, stream_, steps_);
 }
 
@@ -121,6 +139,7 @@ std::map<std::string, std::vector<double>> Fluid::state() const {
     values = patches_[i]->memory();
     values.push_back(patches_[i]->mass_in());
   }
+  if (scheme_) state["scheme"] = scheme_->memory();
   return state;
 }
 
@@ -140,6 +159,7 @@ void Fluid::restore(const std::map<std::string, std::vector<double>>& state) {
     std::copy_n(values.begin(), memory.size(), memory.begin());
     patches_[i]->restore_mass(values.back());
   }
+  if (scheme_) scheme_->restore(state.at("scheme"));
   std::copy(populations.begin(), populations.end(), f_.raw().begin());
   steps_ = static_cast<std::int64_t>(clock[0]);
   stream_.set_odd(clock[1] != 0.0);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lbm_solver/boundary/patch.h"
+#include "lbm_solver/immersed/body_scheme.h"
 #include "lbm_solver/solver/kernel.h"
 
 namespace lbm {
@@ -20,7 +21,7 @@ class Fluid {
   Fluid(const Domain& domain, const KernelChoice& choice);
 
   const Domain& domain() const { return domain_; }
-  bool has_solids() const { return cover_ != nullptr; }
+  bool has_solids() const { return cover_ || scheme_; }
   const CoverMap* cover() const { return cover_.get(); }
 
   /// Sets a cell to the equilibrium of a density and a velocity.
@@ -32,7 +33,13 @@ class Fluid {
   /// Cells [x0, x1) × [y0, y1) become a wall at rest. Needs a solid term in the kernel's choice.
   void add_wall(int x0, int y0, int x1, int y1) { cover_->add_wall(x0, y0, x1, y1); }
 
-  /// Places the solids. Needs a solid term in the kernel's choice.
+  /// Solids act by a scheme of its own instead of covered cells (which walls keep).
+  void use(std::unique_ptr<BodyScheme> scheme) { scheme_ = std::move(scheme); }
+  /// To be called after the last wall was added.
+  void prepare_walls() {
+    if (cover_) cover_->update({});
+  }
+  /// Places the solids for the next step. Needs a scheme, or a solid term in the kernel's choice.
   void place(std::span<const Disc> discs);
 
   /// Advances by one time step.
@@ -40,7 +47,9 @@ class Fluid {
   std::int64_t steps() const { return steps_; }
 
   /// Loads on the placed discs over the last step, in their order.
-  std::vector<DiscLoad> loads() const { return cover_->loads(); }
+  std::vector<DiscLoad> loads() const { return scheme_ ? scheme_->loads() : cover_->loads(); }
+  /// Part of a cell that solids cover, at most 1.
+  double solid_fraction(int x, int y) const;
 
   struct Cell {
     double rho;
@@ -82,6 +91,8 @@ class Fluid {
   std::unique_ptr<Kernel> kernel_;
   Vec2 half_force_;  // half the body force: rho u = Σ c f + F/2
   std::unique_ptr<CoverMap> cover_;
+  std::unique_ptr<BodyScheme> scheme_;
+  std::vector<Disc> discs_;  // of scheme_
   std::vector<std::unique_ptr<Patch>> patches_;
   std::int64_t steps_ = 0;
 };

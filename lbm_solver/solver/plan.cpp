@@ -15,6 +15,7 @@ namespace {
 constexpr double kStepFractionOfContact = 0.1;  // solid step / √(m/k): the papers' λ
 constexpr double kLimitReynoldsCell = 5.0;      // beyond: fixed-Λ TRT gives noisy forces
 constexpr double kDensityChange = 0.03;         // that a pressure difference may cause
+constexpr double kLightest = 0.1;               // density of a particle over the fluid's
 constexpr double kFewCells = 4.0;               // a diameter below which nothing is claimed
 
 double cell_size(const Scene& s) {
@@ -47,6 +48,12 @@ Side to_side(SideKind kind) {
 
 void check_particles(const Scene& s) {
   const ParticleScene& p = *s.particles;
+  if (s.coupling && p.density.lo < kLightest * s.fluid.density)
+    throw InputError(s.file + ": particles.density",
+                     fmt::format("= {:.6g} kg/m³ is below {} of the fluid's: the coupling is not "
+                                 "proven stable there",
+                                 p.density.lo, kLightest),
+                     fmt::format("take at least {:.6g} kg/m³", kLightest * s.fluid.density));
   const double width = s.box.size.minCoeff();
   if (p.diameter.hi > width)
     throw InputError(
@@ -147,8 +154,9 @@ void judge_step(const Scene& s, Plan& plan) {
   if (plan.u_over_c > kWarnSpeed * 1.001)
     plan.warnings.push_back(fmt::format(
         "velocity_scale/C = {:.3g} exceeds {}: compressibility error", plan.u_over_c, kWarnSpeed));
+  const bool has_solids = s.coupling || !s.obstacles.empty();
   const bool fixed_magic = plan.kernel.collision == "trt" || plan.kernel.collision == "bgk";
-  if (plan.reynolds_cell > kLimitReynoldsCell && fixed_magic && plan.kernel.solid_term != "none")
+  if (plan.reynolds_cell > kLimitReynoldsCell && fixed_magic && has_solids)
     plan.warnings.push_back(
         fmt::format("Re_h = {:.3g} exceeds {}: forces are noisy with {}; take collision = \"auto\" "
                     "or a finer cell",
@@ -161,6 +169,37 @@ void judge_step(const Scene& s, Plan& plan) {
   if (plan.cells_per_diameter > 0.0 && plan.cells_per_diameter < kFewCells)
     plan.warnings.push_back(fmt::format("D/Δx = {:.3g} is below {}: no accuracy is claimed",
                                         plan.cells_per_diameter, kFewCells));
+}
+
+void choose_solids(const Scene& s, Plan& plan) {
+  const NumericsScene& n = s.numerics;
+  KernelChoice& k = plan.kernel;
+  k.solid_term = "none";
+  const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
+                                  [](const ObstacleScene& o) { return !o.disc; });
+  if (!s.coupling && s.obstacles.empty()) return;
+  if (n.scheme != "auto" && n.scheme != plan.scheme) {
+    if (n.solid_term != "auto")
+      throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
+                       "leave it out, or take scheme = \"immersed_moving_boundary\"");
+    plan.scheme = n.scheme;
+    if (blocks) k.solid_term = "noble_torczynski";  // walls are covered cells under any scheme
+    return;
+  }
+  k.weight = n.weight_is_fraction ? WeightRule::Fraction : WeightRule::Viscous;
+  k.solid_term = n.solid_term;
+  if (n.solid_term != "auto") return;
+  const auto take = [&](const char* term, const char* reason) {
+    k.solid_term = term;
+    plan.solid_reason = std::string("auto: ") + reason;
+  };
+  if (k.collision != "trt")
+    take("noble_torczynski", "Holdych rings where the fluid is under-resolved");
+  else if (s.coupling)
+    take("layered_holdych", "as accurate as Holdych, and stable for particles that move freely");
+  else
+    take("holdych",
+         "the most accurate and least dependent on τ for bodies that do not move freely");
 }
 
 void choose_kernel(const Scene& s, Plan& plan) {
@@ -181,12 +220,7 @@ void choose_kernel(const Scene& s, Plan& plan) {
   }
   k.turbulence = n.smagorinsky > 0.0 ? "smagorinsky" : "none";
   k.force = s.fluid.body_force.norm() > 0.0;
-  k.solid_term = "none";
-  if (s.coupling || !s.obstacles.empty())
-    k.solid_term = n.solid_term != "auto" ? n.solid_term
-                   : k.collision == "trt" ? "layered_holdych"
-                                          : "noble_torczynski";
-  k.weight = n.weight_is_fraction ? WeightRule::Fraction : WeightRule::Viscous;
+  choose_solids(s, plan);
   const Vec2 force = s.fluid.body_force * (dt * dt / dx);
   k.parameters = {0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx), n.magic, n.smagorinsky, force.x(),
                   force.y()};

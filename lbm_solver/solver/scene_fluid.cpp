@@ -116,7 +116,8 @@ std::vector<Disc> obstacle_discs(const Scene& s, const Plan& p) {
                        p.units.to_lattice_position(o.centre),
                        0.5 * o.diameter / p.units.dx,
                        {0.0, 0.0},
-                       0.0});
+                       p.units.to_lattice_spin(o.spin),
+                       o.hollow});
   return discs;
 }
 
@@ -128,6 +129,13 @@ Fluid make_fluid(const Scene& s, const Plan& p) {
       add_pressure_jump(p, axis, s.box.pressure_jump[axis], fluid);
   for (const ObstacleScene& o : s.obstacles)
     if (!o.disc) add_block(s, p, o, fluid);
+  if (p.scheme != known_schemes().front())
+    fluid.use(make_scheme(
+        p.scheme, p.domain,
+        {p.kernel.force ? 0.5 * Vec2(p.kernel.parameters.force_x, p.kernel.parameters.force_y)
+                        : Vec2(0.0, 0.0),
+         s.numerics.spring_stiffness}));
+  fluid.prepare_walls();
   if (fluid.has_solids()) fluid.place(obstacle_discs(s, p));
   if (s.initial.kind != InitialScene::Kind::Rest || p.kernel.force)
     for (int y = 0; y < p.domain.ny; ++y)

@@ -107,14 +107,18 @@ struct FreeDisc {
 FreeDisc settle(double density_ratio, int steps, bool inner_inertia) {
   const double diameter = 0.0025, radius = 0.5 * diameter, dx = diameter / 10;
   const Units units{dx, 4e-4, 1000.0, 1.0, {0.0, 0.0}};
-  const FluidScene scene{
+  const FluidScene fluid_scene{
       .density = 1000.0, .viscosity = 1e-5, .gravity = {0.0, -9.8}, .velocity_scale = 0.06};
   CouplingScene coupling;
   coupling.inner_inertia = inner_inertia;
-  const double tau = 0.5 + 3.0 * scene.viscosity * units.dt / (dx * dx);
+  const double tau = 0.5 + 3.0 * fluid_scene.viscosity * units.dt / (dx * dx);
   Fluid fluid({80, 160, Side::Wall, Side::Wall},
               {"trt", "none", false, "layered_holdych", {.tau = tau}});
-  Particles particles(units, scene, coupling);
+  Scene scene;
+  scene.fluid = fluid_scene;
+  scene.coupling = coupling;
+  scene.particles.emplace();
+  Particles particles(units, scene);
   const double mass = density_ratio * 1000.0 * std::numbers::pi * radius * radius;
   FreeDisc disc{
       {{1, {0.01, 0.03, 0.0}, {}, {}}, {1, radius, mass, 0.5 * mass * radius * radius, 1}},

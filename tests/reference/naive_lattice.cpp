@@ -189,7 +189,9 @@ Cell NaiveLattice::collided(int x, int y) {
     out[i] = f[i] + (1.0 - weight) * (post[i] - f[i]) + weight * omega_s[i];
     gain += weight * omega_s[i] * direction(i);
   }
-  force_[y * domain_.nx + x] = -gain;
+  const auto& p = choice_.parameters;
+  const Vec2 body = choice_.force ? Vec2(p.force_x, p.force_y) : Vec2(0.0, 0.0);
+  force_[y * domain_.nx + x] = weight * body - gain;
   return out;
 }
 

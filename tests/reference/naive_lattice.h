@@ -30,7 +30,7 @@ class NaiveLattice {
 
   Cell& cell(int x, int y) { return f_[y * domain_.nx + x]; }
   NaiveCover& cover(int x, int y) { return cover_[y * domain_.nx + x]; }
-  /// Force on the solids in a cell over the last step: -B Σ c_i Ω_i^s, the full sum.
+  /// Force on the solids in a cell over the last step: B G - B Σ c_i Ω_i^s, the full sum.
   Vec2 force(int x, int y) const { return force_[y * domain_.nx + x]; }
 
   /// Collides every cell, then moves populations one cell on or bounces them back half-way.

@@ -17,12 +17,20 @@ FluidScene fluid_scene() {
   return {.density = 1000.0, .viscosity = 1e-5, .gravity = {0.0, -9.8}, .velocity_scale = 0.05};
 }
 
+Scene scene_of(const CouplingScene& coupling) {
+  Scene scene;
+  scene.fluid = fluid_scene();
+  scene.coupling = coupling;
+  scene.particles.emplace();
+  return scene;
+}
+
 protocol::Particle particle(double vx, double omega) {
   return {{9, {0.005, 0.01, 0.0}, {vx, 0.0, 0.0}, {0.0, 0.0, omega}}, {9, kRadius, 4e-3, 2e-9, 1}};
 }
 
 TEST(Particles, EntersLatticeUnits) {
-  Particles particles(kUnits, fluid_scene(), {});
+  Particles particles(kUnits, scene_of({}));
   particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
   const auto discs = particles.discs(2e-4);
   EXPECT_NEAR(discs[0].centre.x(), 50.0 + 0.02 * 2e-4 / 1e-4, 1e-12);  // moved on straight
@@ -33,7 +41,7 @@ TEST(Particles, EntersLatticeUnits) {
 }
 
 TEST(Particles, LoadIsTheMeanInSiUnitsWithBuoyancy) {
-  Particles particles(kUnits, fluid_scene(), {});
+  Particles particles(kUnits, scene_of({}));
   particles.arrive(std::vector{particle(0.0, 0.0)}, 4e-4);
   particles.add(std::vector<DiscLoad>{{{2.0, 0.0}, 4.0}});
   particles.add(std::vector<DiscLoad>{{{4.0, 0.0}, 0.0}});
@@ -51,7 +59,7 @@ TEST(Particles, GivesBackTheInertiaOfTheFluidInside) {
   coupling.buoyancy = protocol::Buoyancy::None;
   for (const bool on : {true, false}) {
     coupling.inner_inertia = on;
-    Particles particles(kUnits, fluid_scene(), coupling);
+    Particles particles(kUnits, scene_of(coupling));
     particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
     particles.add(std::vector<DiscLoad>(1));
     EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);  // new: its past is unknown
@@ -67,7 +75,7 @@ TEST(Particles, GivesBackTheInertiaOfTheFluidInside) {
 TEST(Particles, AParticleThatLeftAndCameBackHasNoPast) {
   CouplingScene coupling;
   coupling.buoyancy = protocol::Buoyancy::None;
-  Particles particles(kUnits, fluid_scene(), coupling);
+  Particles particles(kUnits, scene_of(coupling));
   particles.arrive(std::vector{particle(0.02, 0.0)}, 4e-4);
   particles.arrive({}, 4e-4);
   EXPECT_EQ(particles.discs(0.0).size(), 0U);

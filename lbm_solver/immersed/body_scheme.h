@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lbm_solver/field/esoteric_pull.h"
+#include "lbm_solver/immersed/disc.h"
+#include "lbm_solver/immersed/footprint.h"
+
+namespace lbm {
+
+/// A way in which solids act on the fluid that is a pass of its own over cells or links, before or
+/// after the sweep. (The immersed moving boundary is none: its covered cells are part of the
+/// sweep.) These are the schemes that the field compares with; they are written to be read, not to
+/// be fast.
+class BodyScheme {
+ public:
+  virtual ~BodyScheme() = default;
+
+  /// Places the solids for the coming step and prepares the cells for it.
+  virtual void before_sweep(std::span<const Disc> discs, Populations& f,
+                            const EsotericPull& stream) = 0;
+  /// Corrects what arrived. `stream` has advanced.
+  virtual void after_sweep(Populations&, const EsotericPull&) {}
+
+  /// Load of each disc over the last step, in the order of before_sweep.
+  virtual std::vector<DiscLoad> loads() const = 0;
+
+  /// State that a checkpoint must keep.
+  virtual std::vector<double> memory() const { return {}; }
+  virtual void restore(const std::vector<double>&) {}
+};
+
+/// What a scheme needs to know of the fluid.
+struct SchemeParameters {
+  Vec2 half_force{0.0, 0.0};        ///< half the body force on a cell: rho u = Σ c f + F/2
+  double spring_stiffness = 0.001;  ///< of the spring scheme, force a surface element and stretch
+};
+
+/// @param name  one of known_schemes() without the first
+/// @throws std::invalid_argument naming the known ones
+std::unique_ptr<BodyScheme> make_scheme(const std::string& name, const Domain& domain,
+                                        const SchemeParameters& parameters);
+/// "immersed_moving_boundary" and the passes.
+std::vector<std::string> known_schemes();
+
+}  // namespace lbm

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <map>
+#include <vector>
+
+#include "lbm_solver/immersed/body_scheme.h"
+
+namespace lbm {
+
+/// Immersed boundaries: a surface is a row of markers, and the no-slip condition is a force on the
+/// fluid around them, spread with a smooth kernel D of four cells [Peskin2002]. Per marker k at X_k
+/// with surface element s,
+///   u(X_k) = Σ_x u(x) D(x - X_k),   δu(x) = Σ_k δu_k D(x - X_k) s.
+/// The force acts on the populations that have arrived, as a shift by the difference of two
+/// equilibria [Kupershtokh2004]; u there is the velocity with half of the force, as in Guo's
+/// scheme. The fluid inside a body moves like the rest, so that its inertia is part of the load, as
+/// with covered cells.
+class MarkedBodies : public BodyScheme {
+ public:
+  MarkedBodies(const Domain& domain, const SchemeParameters& parameters)
+      : domain_(domain), parameters_(parameters) {}
+
+  void before_sweep(std::span<const Disc> discs, Populations& f,
+                    const EsotericPull& stream) override;
+  std::vector<DiscLoad> loads() const override { return loads_; }
+
+ protected:
+  /// One cell in reach of a marker.
+  struct Reach {
+    std::int32_t cell;
+    double weight;  ///< D
+  };
+  struct Marker {
+    Vec2 arm;  ///< from the disc's centre
+    std::vector<Reach> reach;
+  };
+  /// The markers of a disc where it is now.
+  struct Body {
+    Disc disc;
+    double element = 0.0;  ///< length of surface of a marker
+    std::vector<Marker> markers;
+  };
+
+  /// Change of velocity that each marker asks for, twice the half of the force: [marker].
+  virtual std::vector<Vec2> changes(const Body& body, const std::vector<Vec2>& slip) = 0;
+  /// A body has new places for its markers.
+  virtual void moved(const Body&) {}
+
+  static Vec2 wall_velocity(const Disc& disc, const Vec2& arm) {
+    return disc.velocity + disc.spin * Vec2(-arm.y(), arm.x());
+  }
+
+ private:
+  void mark(Body& body) const;
+  void add_reach(Marker& marker, const Vec2& place) const;
+  Vec2 velocity(std::int32_t cell, const Populations& f, const EsotericPull& stream) const;
+  void shift(std::int32_t cell, const Vec2& change, Populations& f,
+             const EsotericPull& stream) const;
+
+  Domain domain_;
+
+ protected:
+  SchemeParameters parameters_;
+
+ private:
+  std::vector<Body> bodies_;
+  std::vector<DiscLoad> loads_;
+};
+
+/// Implicit velocity correction [WuShu2009], the comparator of paper A: the δu_k are such that the
+/// corrected velocity is the wall's at every marker,
+///   Σ_j A_kj δu_j = U_k - u*(X_k),   A_kj = s Σ_x D(x - X_k) D(x - X_j).
+class ImplicitMarkers final : public MarkedBodies {
+ public:
+  using MarkedBodies::MarkedBodies;
+
+ private:
+  std::vector<Vec2> changes(const Body& body, const std::vector<Vec2>& slip) override;
+  void moved(const Body& body) override;
+  std::map<std::int64_t, Eigen::LDLT<Eigen::MatrixXd>> systems_;  // by disc id
+};
+
+/// Springs of stiffness κ between markers that move with the fluid and their places on the body,
+/// paper A Eqs 31-32: force on the fluid -κ ξ an element, dξ/dt = u - U.
+class SpringMarkers final : public MarkedBodies {
+ public:
+  using MarkedBodies::MarkedBodies;
+  std::vector<double> memory() const override;
+  void restore(const std::vector<double>& memory) override;
+
+ private:
+  std::vector<Vec2> changes(const Body& body, const std::vector<Vec2>& slip) override;
+  std::map<std::int64_t, std::vector<Vec2>> stretch_;  // by disc id
+};
+
+}  // namespace lbm
