@@ -72,6 +72,7 @@ class MarkedBodies : public BodyScheme {
 /// Implicit velocity correction [WuShu2009], the comparator of paper A: the δu_k are such that the
 /// corrected velocity is the wall's at every marker,
 ///   Σ_j A_kj δu_j = U_k - u*(X_k),   A_kj = s Σ_x D(x - X_k) D(x - X_j).
+/// Each body for itself: where two come nearer than four cells, both force the fluid between them.
 class ImplicitMarkers final : public MarkedBodies {
  public:
   using MarkedBodies::MarkedBodies;

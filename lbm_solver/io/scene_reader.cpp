@@ -84,9 +84,9 @@ NumericsScene read_numerics(TableReader t) {
   n.time_step = t.optional_number("time_step", Bounds::positive(), "s");
   n.collision = t.choice_or("collision", n.collision,
                             {"auto", "bgk", "trt", "central_moment", "recursive_regularised"});
-  n.solid_term =
-      t.choice_or("solid_term", n.solid_term,
-                  {"auto", "layered_holdych", "holdych", "noble_torczynski", "superposition"});
+  n.solid_term = t.choice_or("solid_term", n.solid_term,
+                             {"auto", "layered_holdych", "layered_noble_torczynski", "holdych",
+                              "noble_torczynski", "superposition"});
   n.scheme =
       t.choice_or("scheme", n.scheme,
                   {"auto", "immersed_moving_boundary", "bounce_back", "interpolated_bounce_back",

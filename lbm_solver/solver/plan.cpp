@@ -177,6 +177,8 @@ void choose_solids(const Scene& s, Plan& plan) {
   k.solid_term = "none";
   const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
                                   [](const ObstacleScene& o) { return !o.disc; });
+  const bool spinning = std::any_of(s.obstacles.begin(), s.obstacles.end(),
+                                    [](const ObstacleScene& o) { return o.spin != 0.0; });
   if (!s.coupling && s.obstacles.empty()) return;
   if (n.scheme != "auto" && n.scheme != plan.scheme) {
     if (n.solid_term != "auto")
@@ -194,12 +196,11 @@ void choose_solids(const Scene& s, Plan& plan) {
     plan.solid_reason = std::string("auto: ") + reason;
   };
   if (k.collision != "trt")
-    take("noble_torczynski", "Holdych rings where the fluid is under-resolved");
-  else if (s.coupling)
-    take("layered_holdych", "as accurate as Holdych, and stable for particles that move freely");
+    take("layered_noble_torczynski", "Holdych rings where the fluid is under-resolved");
+  else if (s.coupling || spinning)
+    take("layered_holdych", "nearly as accurate as Holdych, and stable in bodies that move");
   else
-    take("holdych",
-         "the most accurate and least dependent on τ for bodies that do not move freely");
+    take("holdych", "the most accurate and least dependent on τ for bodies at rest");
 }
 
 void choose_kernel(const Scene& s, Plan& plan) {
@@ -308,6 +309,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan) {
     number(fmt::format("{}_lo", axis[k]), h.box_lo[k]);
     number(fmt::format("{}_hi", axis[k]), h.box_hi[k]);
     h.variables.push_back({fmt::format("boundary_{}", axis[k]), h.periodic[k] ? "p" : "f"});
+    whole(fmt::format("walls_{}", axis[k]), h.periodic[k] ? 0 : 1);
   }
   const double g = s.fluid.gravity.norm();
   number("depth", s.box.depth);

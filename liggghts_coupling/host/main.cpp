@@ -44,6 +44,14 @@ bool defines(const Arguments& arguments, const std::string& variable) {
   return false;
 }
 
+/// The folder of the script, for what it includes.
+void add_scene_folder(Arguments& arguments) {
+  if (defines(arguments, "scene_folder")) return;
+  const auto folder = std::filesystem::path(option(arguments, "-in", "-i")).parent_path();
+  arguments.insert(arguments.end(),
+                   {"-var", "scene_folder", folder.empty() ? "." : folder.string()});
+}
+
 /// What the fluid offers becomes a script variable, unless the command line has its own.
 void add_offered_variables(Arguments& arguments, const protocol::Hello& fluid) {
   Arguments added;
@@ -87,6 +95,7 @@ void run(Arguments& arguments) {
     if (option(arguments, "-in", "-i").empty())
       arguments.insert(arguments.end(), {"-in", "in.liggghts"});
     check_script(arguments);
+    add_scene_folder(arguments);
     coupling.session = std::make_unique<protocol::SolidSession>(*coupling.channel, kHelloSeconds);
     add_offered_variables(arguments, coupling.session->fluid());
   } else {

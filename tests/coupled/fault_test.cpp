@@ -134,7 +134,7 @@ TEST(ScriptError, BeforeTheCouplingOnThreeRanks) {
 TEST(ScriptError, DuringTheRun) {
   SettlingDisc scene;  // the disc leaves the box and LIGGGHTS misses an atom
   scene.change_scene("end_time = 0.04", "end_time = 1.0");
-  scene.change_script("fix              floor", "#");
+  scene.change_script("then \"fix bottom", "then \"variable no equal 0\" else \"fix bottom");
   scene.change_script("${particle1_y}", "0.0004");
   scene.change_script("thermo           5000",
                       "thermo 100\nthermo_modify lost error\nset atom 1 vy -0.05");
@@ -227,6 +227,8 @@ TEST(Lost, ASilentFluidIsNamedAfterTheTimeOut) {
                                     {"boundary_x", "f"},
                                     {"boundary_y", "f"},
                                     {"boundary_z", "p"},
+                                    {"walls_x", "1"},
+                                    {"walls_y", "1"},
                                     {"diameter_max", "0.0025"},
                                     {"density_max", "1250"},
                                     {"depth", "1"},

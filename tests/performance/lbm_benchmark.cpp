@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "lbm_solver/immersed/boundary_trace.h"
 #include "lbm_solver/solver/fluid.h"
 #include "tests/performance/aos_baseline.h"
 
@@ -25,6 +26,7 @@ struct Entry {
   std::string name, collision;
   int grid = 0, threads = 1;
   double covered = 0.0, mlups = 0.0;
+  bool moving = false;  ///< the discs are placed anew in each step
 };
 
 /// Discs of ten cells on a square lattice, moving slowly, that cover a part of the grid.
@@ -59,10 +61,15 @@ void kernel_benchmark(benchmark::State& state, const Entry& e, KernelChoice choi
   choice.parameters.tau = 0.8;
   Fluid fluid({e.grid, e.grid, Side::Periodic, Side::Periodic}, choice);
   stir(fluid);
-  if (choice.solid_term != "none") fluid.place(packing(e.grid, e.covered));
+  std::vector<Disc> discs = packing(e.grid, e.covered);
+  if (choice.solid_term != "none") fluid.place(discs);
   const int steps = steps_for(e.grid);
   for (auto _ : state)
     for (int s = 0; s < steps; ++s) {
+      if (e.moving) {
+        for (Disc& d : discs) d.centre += d.velocity;
+        fluid.place(discs);
+      }
       fluid.step();
       if (e.covered > 0.0) benchmark::DoNotOptimize(fluid.loads());
     }
@@ -75,6 +82,31 @@ void aos_benchmark(benchmark::State& state, const Entry& e) {
   for (auto _ : state)
     for (int s = 0; s < steps; ++s) lattice.step();
   state.SetItemsProcessed(state.iterations() * steps * e.grid * e.grid);
+}
+
+/// One part of a particle's cost, for 49 and for 10 000 discs of ten cells: items are particles.
+void particle_benchmark(benchmark::State& state, int count, const std::string& part) {
+  omp_set_num_threads(1);
+  const int side = static_cast<int>(std::round(std::sqrt(count))), n = 16 * side;
+  CoverMap cover({n, n, Side::Periodic, Side::Periodic}, {WeightRule::Viscous, 0.8});
+  std::vector<Disc> discs;
+  for (int i = 0; i < count; ++i)
+    discs.push_back(
+        {i, {8.0 + 16.0 * (i % side), 8.3 + 16.0 * (i / side)}, 5.0, {1e-3, 0.0}, 1e-4});
+  cover.update(discs);
+  for (auto _ : state) {
+    if (part == "map")
+      for (Disc& d : discs) d.centre += d.velocity;
+    if (part == "velocity")
+      for (Disc& d : discs) d.spin += 1e-9;
+    if (part == "loads")
+      benchmark::DoNotOptimize(cover.loads());
+    else if (part == "trace")
+      for (const Disc& d : discs) benchmark::DoNotOptimize(trace_boundary(d.centre, d.radius));
+    else
+      cover.update(discs);
+  }
+  state.SetItemsProcessed(state.iterations() * count);
 }
 
 /// Updates nine arrays in place, as a sweep does without any arithmetic: items are lattice updates.
@@ -149,6 +181,18 @@ void register_all(const std::vector<int>& grids, int threads) {
         kernel_benchmark(s, e, {.collision = "trt", .solid_term = "layered_holdych"});
       });
     }
+    for (const double covered : {0.1, 0.4}) {
+      const Entry e{label(fmt::format("trt coupled {:.0f} %", 100 * covered), n, 1),
+                    "trt",
+                    n,
+                    1,
+                    covered,
+                    0.0,
+                    true};
+      add(e, [=](benchmark::State& s) {
+        kernel_benchmark(s, e, {.collision = "trt", .solid_term = "layered_holdych"});
+      });
+    }
     const Entry aos{label("AoS two lattices", n, 1), "trt", n, 1};
     add(aos, [=](benchmark::State& s) { aos_benchmark(s, aos); });
   }
@@ -166,6 +210,11 @@ nlohmann::json report(const Collector& c) {
   for (const Entry& e : entries) {
     const double rate = rate_of(c, e.name);
     if (std::isnan(rate)) continue;
+    if (e.grid == 0) {
+      fmt::print("{:32} {:>8.0f} ns a particle\n", e.name, 1e9 / rate);
+      list.push_back({{"name", e.name}, {"nanoseconds_a_particle", 1e9 / rate}});
+      continue;
+    }
     const double roof = rate / rate_of(c, label("bandwidth", e.grid, e.threads));
     const double pure = rate / rate_of(c, label("trt", e.grid, e.threads));
     const double baseline = rate / rate_of(c, label("AoS two lattices", e.grid, 1));
@@ -201,6 +250,10 @@ int main(int argc, char** argv) {
   app.add_option("--grid", grids, "cells along a side");
   CLI11_PARSE(app, argc, argv);
   register_all(grids, threads);
+  for (const int count : {49, 10000})
+    for (const char* part : {"map", "velocity", "loads", "trace"})
+      add({fmt::format("particles {} {}", count, part)},
+          [=](benchmark::State& s) { particle_benchmark(s, count, part); });
 
   std::vector<std::string> words{argv[0], "--benchmark_enable_random_interleaving=true",
                                  "--benchmark_filter=bandwidth|" + filter};

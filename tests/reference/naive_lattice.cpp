@@ -42,8 +42,10 @@ Cell NaiveLattice::solid_term(const Cell& f, const Cell& eq, double rho,
       omega[i] = holdych;
     else if (choice_.solid_term == "superposition")
       omega[i] = solid[i] - f[i] + (1.0 - 1.0 / choice_.parameters.tau) * (f[i] - eq[i]);
+    else if (!c.whole)
+      omega[i] = choice_.solid_term == "layered_holdych" ? holdych : noble_torczynski;
     else
-      omega[i] = !c.whole ? holdych : c.core ? solid[i] - f[i] : noble_torczynski;
+      omega[i] = c.core ? solid[i] - f[i] : 0.95 * noble_torczynski + 0.05 * (solid[i] - f[i]);
   }
   return omega;
 }

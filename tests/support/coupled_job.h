@@ -27,6 +27,18 @@ inline std::string mpirun(const Program& first, const Program& second) {
          std::to_string(second.ranks) + " " + second.command;
 }
 
+/// The settling disc's script with the files that it includes in their places, so that a test can
+/// change any line.
+inline std::string whole_script() {
+  std::string script = read_file(kCase + "/in.liggghts");
+  const std::string folder = "${scene_folder}";
+  for (std::size_t at; (at = script.find("include ")) != std::string::npos;) {
+    const std::size_t end = script.find('\n', at), path = script.find(folder, at) + folder.size();
+    script.replace(at, end - at, read_file(kCase + script.substr(path, end - path)));
+  }
+  return script;
+}
+
 /// A folder with the settling disc's scene at ten cells a diameter, short, to be changed at will.
 class SettlingDisc {
  public:
@@ -34,7 +46,7 @@ class SettlingDisc {
     set_scene(replaced(replaced(read_file(kCase + "/scene.toml"), "cells_per_diameter = 20",
                                 "cells_per_diameter = 10"),
                        "end_time = 1.0", "end_time = 0.04"));
-    set_script(read_file(kCase + "/in.liggghts"));
+    set_script(whole_script());
   }
   const std::string& folder() const { return folder_.path(); }
   const std::string& scene() const { return scene_; }

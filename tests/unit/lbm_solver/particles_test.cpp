@@ -21,6 +21,7 @@ Scene scene_of(const CouplingScene& coupling) {
   Scene scene;
   scene.fluid = fluid_scene();
   scene.coupling = coupling;
+  if (!coupling.virtual_mass) scene.coupling->virtual_mass = 0.0;
   scene.particles.emplace();
   return scene;
 }
@@ -83,6 +84,36 @@ TEST(Particles, AParticleThatLeftAndCameBackHasNoPast) {
   particles.arrive(std::vector{particle(0.05, 0.0)}, 4e-4);
   particles.add(std::vector<DiscLoad>(1));
   EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);
+}
+
+TEST(Particles, VirtualMassLeavesASteadyLoadAsItIs) {
+  // Held by another force that balances the load: nothing accelerates, so nothing may change.
+  CouplingScene coupling;
+  coupling.buoyancy = protocol::Buoyancy::None;
+  coupling.virtual_mass = 2.0;
+  Particles particles(kUnits, scene_of(coupling));
+  protocol::Load load;
+  for (int k = 0; k < 60; ++k) {
+    particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
+    particles.add(std::vector<DiscLoad>{{{2.0, 0.0}, 4.0}});
+    load = particles.mean_loads(1)[0];
+  }
+  const double force = 1000.0 * 1e-12 * 0.5 / (2e-4 * 2e-4);
+  EXPECT_NEAR(load.force[0], 2.0 * force, 1e-9 * force);
+  EXPECT_NEAR(load.torque[2], 4.0 * force * 1e-4, 1e-9 * force * 1e-4);
+}
+
+TEST(Particles, TheFluidSeesTheHydraulicRadius) {
+  Scene scene = scene_of({});
+  scene.particles->hydraulic_ratio = {1.0, 0.8};
+  Particles particles(kUnits, scene);
+  protocol::Particle small = particle(0.0, 0.0);
+  small.shape.type = 2;
+  particles.arrive(std::vector{small}, 4e-4);
+  EXPECT_NEAR(particles.discs(0.0)[0].radius, 8.0, 1e-12);
+  particles.add(std::vector<DiscLoad>(1));
+  // buoyancy of the disc that the fluid sees
+  EXPECT_NEAR(particles.mean_loads(1)[0].force[1], 0.64 * kFluidMass * 9.8, 1e-12);
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(Plan, AutoTakesTheOperatorThatSuitsAndSaysWhy) {
   s.fluid.viscosity = 1e-6;  // Re_h = 7.5
   p = make_plan(s);
   EXPECT_EQ(p.kernel.collision, "central_moment");
-  EXPECT_EQ(p.kernel.solid_term, "noble_torczynski");
+  EXPECT_EQ(p.kernel.solid_term, "layered_noble_torczynski");
   EXPECT_NE(p.collision_reason.find("Re_h = 7.5"), std::string::npos) << p.collision_reason;
   s.fluid.viscosity = 1e-5;
   s.numerics.smagorinsky = 0.1;

@@ -63,7 +63,7 @@ class Launch(unittest.TestCase):
     def test_unknown_names_are_listed(self):
         for words, expected in ((["nothing"], "settling_disc"),
                                 (["settling_disc", "--set", "nothing"], "resolved, fine"),
-                                (["settling_disc", "--variant", "nothing"], "d10, no_inner_inertia")):
+                                (["settling_disc", "--variant", "nothing"], "d10, glowinski2, no_inner_inertia")):
             code, text = self.run_main(*words)
             self.assertEqual(code, 2)
             self.assertIn(expected, text)
