@@ -9,8 +9,8 @@
 #include <filesystem>
 
 #include "lbm_solver/base/errors.h"
-#include "lbm_solver/coupling/run.h"
 #include "lbm_solver/coupling/report.h"
+#include "lbm_solver/coupling/run.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "protocol/mpi_channel.h"
 #include "protocol/program.h"
