@@ -7,6 +7,9 @@
 #include <map>
 #include <string>
 
+#include "liggghts_coupling/bond/fix_bond_breaks.h"
+#include "liggghts_coupling/bond/fix_bond_create.h"
+#include "liggghts_coupling/bond/fix_time_step.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
 
 namespace dem {
@@ -42,6 +45,9 @@ Fix* create(LAMMPS* lammps, int narg, char** arg) {
 void register_styles(LAMMPS& lammps) {
   FixMap fixes = lammps.modify->*member(FixMapTag());
   (*fixes)["lbm/couple"] = &create<FixLbmCouple>;
+  (*fixes)["bond/create"] = &create<FixBondCreate>;
+  (*fixes)["bond/breaks"] = &create<FixBondBreaks>;
+  (*fixes)["bond/timestep"] = &create<FixTimeStep>;
 }
 
 }  // namespace dem

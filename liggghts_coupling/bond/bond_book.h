@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// What the pair style and the fixes about bonds share in one process: a wish to make bonds, and
+/// what happened to them.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "liggghts_coupling/bond/bond_law.h"
+
+namespace dem {
+
+/// Which pairs are to be bonded in the coming force computation.
+struct BondRequest {
+  double gap = 0.0;                          ///< largest gap [m]
+  std::optional<std::pair<int, int>> types;  ///< only between these two
+  std::optional<std::set<std::pair<long, long>>>
+      listed;  ///< only these pairs of ids, smaller first
+
+  bool wants(long a, long b, int type_a, int type_b, double overlap) const {
+    if (-overlap > gap) return false;
+    if (types && *types != std::pair(type_a, type_b) && *types != std::pair(type_b, type_a))
+      return false;
+    return !listed || listed->contains({std::min(a, b), std::max(a, b)});
+  }
+};
+
+/// A bond that broke.
+struct BreakEvent {
+  long step = 0;
+  double time = 0.0;
+  long first = 0, second = 0;  ///< ids, the smaller first
+  Break mode = Break::None;
+  double force = 0.0;  ///< that broke it [N]
+  Vector place{};      ///< contact point [m]
+  Vector normal{};     ///< unit, from the second to the first
+};
+
+/// Of this process; a pair that two processes compute is counted by one.
+struct BondBook {
+  static BondBook& instance();
+
+  std::optional<BondRequest> request;
+  double spread = 0.0;  ///< of the strengths
+  unsigned long seed = 0;
+  double largest_gap = 0.0;  ///< of any bond made, for the guard [m]
+
+  long created = 0, broken_tension = 0, broken_shear = 0;  ///< since the beginning
+  long intact = 0;                                         ///< at the last force computation
+  EnergyFlow energy;                        ///< elastic now, the rest since the beginning [J]
+  std::vector<BreakEvent> events;           ///< not yet written
+  std::vector<std::pair<long, long>> made;  ///< pairs bonded by the last request
+};
+
+}  // namespace dem

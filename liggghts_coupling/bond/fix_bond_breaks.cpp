@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "liggghts_coupling/bond/fix_bond_breaks.h"
+
+#include <comm.h>
+#include <error.h>
+#include <fmt/format.h>
+#include <force.h>
+#include <update.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <sstream>
+#include <tuple>
+#include <vector>
+
+#include "liggghts_coupling/bond/bond_book.h"
+
+namespace dem {
+namespace {
+
+constexpr const char* kColumns = "step,time,id1,id2,mode,force,x,y,z,nx,ny,nz\n";
+
+/// Lines of an earlier run before a step.
+std::string kept_lines(const std::string& path, long before) {
+  std::ifstream file(path);
+  std::string line, kept;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    long step = 0;
+    if (std::istringstream(line) >> step && step <= before) kept += line + "\n";
+  }
+  return kept;
+}
+
+std::string text(const BreakEvent& e) {
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", e.step, e.time, e.first, e.second,
+                     e.mode == Break::Tension ? "tension" : "shear", e.force, e.place[0],
+                     e.place[1], e.place[2], e.normal[0], e.normal[1], e.normal[2]);
+}
+
+}  // namespace
+
+FixBondBreaks::FixBondBreaks(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
+    : Fix(lammps, narg, arg) {
+  vector_flag = 1;
+  size_vector = 9;
+  global_freq = 1;
+  extvector = 1;
+  for (int k = 3; k + 1 < narg; k += 2) {
+    const std::string word = arg[k];
+    if (word == "every")
+      nevery = force->inumeric(FLERR, arg[k + 1]);
+    else if (word == "file")
+      path_ = arg[k + 1];
+    else
+      path_.clear();
+  }
+  if (narg != 7 || path_.empty() || nevery < 1)
+    error->fix_error(FLERR, this, "expects 'every N file FILE' with N at least 1");
+}
+
+int FixBondBreaks::setmask() {
+  return LAMMPS_NS::FixConst::END_OF_STEP | LAMMPS_NS::FixConst::POST_RUN;
+}
+
+void FixBondBreaks::init() {
+  if (comm->me == 0 && !file_) open();
+}
+
+void FixBondBreaks::open() {
+  const std::string kept =
+      update->ntimestep > 0 ? kept_lines(path_, static_cast<long>(update->ntimestep)) : "";
+  file_.reset(std::fopen(path_.c_str(), "w"));
+  if (!file_) error->one(FLERR, ("fix bond/breaks: " + path_ + " cannot be written").c_str());
+  std::fputs((kColumns + kept).c_str(), file_.get());
+  std::fflush(file_.get());
+}
+
+void FixBondBreaks::end_of_step() {
+  write();
+  check_counts();
+}
+
+/// Gathers the events of all ranks; in the file they are in the order of steps and ids.
+void FixBondBreaks::write() {
+  std::vector<BreakEvent>& mine = BondBook::instance().events;
+  const int bytes = static_cast<int>(mine.size() * sizeof(BreakEvent));
+  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs);
+  MPI_Gather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, world);
+  for (int r = 1; r < comm->nprocs; ++r) starts[r] = starts[r - 1] + sizes[r - 1];
+  std::vector<BreakEvent> all(
+      comm->me == 0 ? static_cast<std::size_t>(starts.back() + sizes.back()) / sizeof(BreakEvent)
+                    : 0);
+  MPI_Gatherv(mine.data(), bytes, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE, 0,
+              world);
+  mine.clear();
+  std::sort(all.begin(), all.end(), [](const BreakEvent& a, const BreakEvent& b) {
+    return std::tuple(a.step, a.first, a.second) < std::tuple(b.step, b.first, b.second);
+  });
+  if (all.empty()) return;
+  for (const BreakEvent& e : all) std::fputs(text(e).c_str(), file_.get());
+  std::fflush(file_.get());
+}
+
+void FixBondBreaks::check_counts() {
+  const BondBook& book = BondBook::instance();
+  const long mine[3] = {book.created, book.intact, book.broken_tension + book.broken_shear};
+  long all[3];
+  MPI_Allreduce(mine, all, 3, MPI_LONG, MPI_SUM, world);
+  if (all[0] != all[1] + all[2])
+    error->fix_error(
+        FLERR, this,
+        fmt::format("step {}: {} bonds were created, but {} are intact and {} broken: {} were lost "
+                    "without breaking (did a particle leave the box?)",
+                    static_cast<long>(update->ntimestep), all[0], all[1], all[2],
+                    all[0] - all[1] - all[2])
+            .c_str());
+}
+
+double FixBondBreaks::compute_vector(int n) {
+  const BondBook& b = BondBook::instance();
+  const std::array<double, 9> values{static_cast<double>(b.intact),
+                                     static_cast<double>(b.broken_tension),
+                                     static_cast<double>(b.broken_shear),
+                                     static_cast<double>(b.created),
+                                     b.energy.elastic,
+                                     b.energy.friction,
+                                     b.energy.damping,
+                                     b.energy.released,
+                                     b.energy.stiffness_change};
+  double all = 0.0;
+  MPI_Allreduce(&values[n], &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+}  // namespace dem

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "liggghts_coupling/bond/fix_bond_create.h"
+
+#include <comm.h>
+#include <error.h>
+#include <fmt/format.h>
+#include <force.h>
+#include <pair.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include "liggghts_coupling/bond/bond_book.h"
+
+namespace dem {
+namespace {
+
+/// What a restart file keeps, as doubles.
+constexpr int kKept = 7;  // done, spread, seed, largest gap, created, broken by tension, by shear
+
+}  // namespace
+
+FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
+    : Fix(lammps, narg, arg) {
+  restart_global = 1;
+  BondBook& book = BondBook::instance();
+  BondRequest request;
+  bool gap = false;
+  for (int k = 3; k < narg;) {
+    const std::string word = arg[k];
+    const auto need = [&](int count) {
+      if (k + count >= narg)
+        error->fix_error(FLERR, this, ("'" + word + "' lacks its value").c_str());
+    };
+    if (word == "gap") {
+      need(1);
+      request.gap = force->numeric(FLERR, arg[k + 1]);
+      gap = true;
+      k += 2;
+    } else if (word == "types") {
+      need(2);
+      request.types = {force->inumeric(FLERR, arg[k + 1]), force->inumeric(FLERR, arg[k + 2])};
+      k += 3;
+    } else if (word == "list") {
+      need(1);
+      request.listed.emplace();
+      book.request = request;
+      read_list(arg[k + 1]);
+      request.listed = book.request->listed;
+      k += 2;
+    } else if (word == "spread") {
+      need(1);
+      book.spread = force->numeric(FLERR, arg[k + 1]);
+      if (book.spread < 0.0 || book.spread >= 1.0)
+        error->fix_error(FLERR, this, "spread is at least 0 and below 1");
+      k += 2;
+    } else if (word == "seed") {
+      need(1);
+      book.seed = static_cast<unsigned long>(force->inumeric(FLERR, arg[k + 1]));
+      k += 2;
+    } else {
+      error->fix_error(
+          FLERR, this,
+          ("knows no '" + word + "'; use gap G [types A B] [list FILE] [spread S seed N]").c_str());
+    }
+  }
+  if (!gap || request.gap < 0.0)
+    error->fix_error(FLERR, this, "needs 'gap G', the largest gap in m, at least 0");
+  book.request = request;
+}
+
+void FixBondCreate::read_list(const char* path) {
+  std::ifstream file(path);
+  if (!file) error->fix_error(FLERR, this, (std::string(path) + " cannot be read").c_str());
+  auto& listed = *BondBook::instance().request->listed;
+  for (long a = 0, b = 0; file >> a >> b;) listed.emplace(std::min(a, b), std::max(a, b));
+  if (!file.eof())
+    error->fix_error(FLERR, this, (std::string(path) + ": two ids a line are wanted").c_str());
+  wanted_ = static_cast<long>(listed.size());
+}
+
+void FixBondCreate::init() {
+  if (!force->pair || !force->pair_match("gran", 1))
+    error->fix_error(FLERR, this, "needs pair_style gran model bond/contact");
+}
+
+/// The forces of the run's first step have been computed, and with them the bonds made.
+void FixBondCreate::setup(int) {
+  if (done_) return;
+  done_ = true;
+  BondBook& book = BondBook::instance();
+  long all = 0;
+  MPI_Allreduce(&book.created, &all, 1, MPI_LONG, MPI_SUM, world);
+  if (wanted_ >= 0 && all != wanted_)
+    error->fix_error(FLERR, this,
+                     fmt::format("{} of the {} listed pairs are no neighbours within the gap; give "
+                                 "a larger gap or correct the list",
+                                 wanted_ - all, wanted_)
+                         .c_str());
+  if (comm->me == 0) {
+    const std::string text = fmt::format("bonds created: {}\n", all);
+    for (FILE* out : {screen, logfile})
+      if (out) std::fputs(text.c_str(), out);
+  }
+}
+
+void FixBondCreate::write_restart(FILE* file) {
+  const BondBook& book = BondBook::instance();
+  long mine[3] = {book.created, book.broken_tension, book.broken_shear}, all[3];
+  MPI_Reduce(mine, all, 3, MPI_LONG, MPI_SUM, 0, world);
+  double gap = 0.0;
+  MPI_Reduce(&book.largest_gap, &gap, 1, MPI_DOUBLE, MPI_MAX, 0, world);
+  if (comm->me != 0) return;
+  const double kept[kKept] = {done_ ? 1.0 : 0.0,
+                              book.spread,
+                              static_cast<double>(book.seed),
+                              gap,
+                              static_cast<double>(all[0]),
+                              static_cast<double>(all[1]),
+                              static_cast<double>(all[2])};
+  const int size = sizeof kept;
+  std::fwrite(&size, sizeof size, 1, file);
+  std::fwrite(kept, sizeof kept, 1, file);
+}
+
+void FixBondCreate::restart(char* buffer) {
+  double kept[kKept];
+  std::memcpy(kept, buffer, sizeof kept);
+  BondBook& book = BondBook::instance();
+  done_ = kept[0] != 0.0;
+  if (!done_) return;
+  book.request.reset();
+  book.spread = kept[1];
+  book.seed = static_cast<unsigned long>(kept[2]);
+  book.largest_gap = kept[3];
+  // sums over all ranks: one keeps them
+  book.created = comm->me == 0 ? static_cast<long>(kept[4]) : 0;
+  book.broken_tension = comm->me == 0 ? static_cast<long>(kept[5]) : 0;
+  book.broken_shear = comm->me == 0 ? static_cast<long>(kept[6]) : 0;
+}
+
+}  // namespace dem

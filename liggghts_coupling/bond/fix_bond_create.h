@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <mpi.h>
+// clang-format off
+#include <lammps.h>
+#include <fix.h>
+// clang-format on
+
+namespace dem {
+
+/// fix ID all bond/create gap G [types A B] [list FILE] [spread S seed N]
+///
+/// Bonds, once, at the beginning of the next run, every pair of particles whose gap is at most G
+/// [m]: of all types or of two, or only the pairs of ids in a file (two a line). Strengths spread
+/// uniformly by the part S about their value. After a restart the same line makes nothing anew: the
+/// restart file says that it was done, and with what spread.
+class FixBondCreate final : public LAMMPS_NS::Fix {
+ public:
+  FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
+
+  int setmask() override { return 0; }
+  void init() override;
+  void setup(int vflag) override;
+  void write_restart(FILE* file) override;
+  void restart(char* buffer) override;
+
+ private:
+  void read_list(const char* path);
+  void check_list();
+  bool done_ = false;  ///< bonds were made, in this run or before the restart
+  long wanted_ = -1;   ///< pairs of the list
+};
+
+}  // namespace dem

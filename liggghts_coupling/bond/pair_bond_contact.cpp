@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// `pair_style gran model bond/contact [exponent 1|1.5] [ledger on]`: the bond law as a LIGGGHTS
+/// granular model. Its history, its way over ranks and into restart files are LIGGGHTS' own.
+#include "liggghts_coupling/bond/pair_bond_contact.h"
+
+// The order of these matters: fix_insert_stream.h before pair_gran_base.h.
+// clang-format off
+#include <mpi.h>
+#include <lammps.h>
+#include <atom.h>
+#include <domain.h>
+#include <error.h>
+#include <force.h>
+#include <modify.h>
+#include <neighbor.h>
+#include <update.h>
+#include <contact_models.h>
+#include <fix_insert_stream.h>
+#include <global_properties.h>
+#include <pair_gran_base.h>
+// clang-format on
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "liggghts_coupling/bond/bond_book.h"
+
+namespace LIGGGHTS::ContactModels {
+namespace {
+
+using dem::BondBook;
+using LAMMPS_NS::LAMMPS;
+
+constexpr int kModelId = 60;  // 6 bits; the library uses 0 … 9
+constexpr const char* kName = "model bond/contact";
+constexpr double kLargestFactor = 1.5;  // reach of a pair's history over the sum of radii
+
+/// A property per pair of types, by its name in the script.
+template <const char* const& name>
+MatrixProperty* property(PropertyRegistry& registry, const char* caller, bool sanity_checks) {
+  return MODEL_PARAMS::createPerTypePairProperty(registry, name, caller, sanity_checks, 0.0);
+}
+constexpr const char* kContactNormal = "contactNormalStiffness";
+constexpr const char* kContactShear = "contactShearStiffness";
+constexpr const char* kFriction = "coefficientFriction";
+constexpr const char* kDamping = "contactDampingRatio";
+constexpr const char* kBondNormal = "bondNormalStiffness";
+constexpr const char* kBondShear = "bondShearStiffness";
+constexpr const char* kTensile = "bondTensileStrength";
+constexpr const char* kShear = "bondShearStrength";
+
+class BondContactModel : protected Pointers {
+ public:
+  BondContactModel(LAMMPS* lammps, IContactHistorySetup* history, bool is_wall, const int64_t)
+      : Pointers(lammps) {
+    if (is_wall)
+      error->all(FLERR, "bond/contact is no wall model; use fix wall/gran model hooke/stiffness");
+    bonded_ = history->add_history_value("bonded", "0");
+    history->add_history_value("bondRestOverlap", "0");
+    // "1": seen from the other particle, with the other sign
+    for (const char* name : {"shearForceX", "shearForceY", "shearForceZ"})
+      history->add_history_value(name, "1");
+  }
+
+  int64_t hashcode() { return kModelId; }
+  void registerSettings(Settings& settings) {
+    settings.registerDoubleSetting("exponent", exponent_, 1.0);
+    settings.registerOnOff("ledger", ledger_, false);
+  }
+  void postSettings(IContactHistorySetup*) {
+    if (exponent_ != 1.0 && exponent_ != 1.5)
+      error->all(FLERR,
+                 "pair_style gran model bond/contact: exponent is 1 (linear) or 1.5 (Hertz)");
+  }
+  void connectToProperties(PropertyRegistry& registry) {
+    connect<kContactNormal>(registry, contact_normal_);
+    connect<kContactShear>(registry, contact_shear_);
+    connect<kFriction>(registry, friction_);
+    connect<kDamping>(registry, damping_);
+    connect<kBondNormal>(registry, bond_normal_);
+    connect<kBondShear>(registry, bond_shear_);
+    connect<kTensile>(registry, tensile_);
+    connect<kShear>(registry, shear_);
+    check_settings();
+    reserve_range(registry);
+  }
+  int get_history_offset(const std::string&) { return -1; }
+  bool contact_match(const std::string& type, const std::string& model) {
+    return type == "normal" && model == "bond/contact";
+  }
+  double stressStrainExponent() { return exponent_; }
+  bool checkSurfaceIntersect(SurfacesIntersectData&) { return true; }
+  void endSurfacesIntersect(SurfacesIntersectData&, LAMMPS_NS::TriMesh*, ForceData&, ForceData&) {}
+
+  void beginPass(SurfacesIntersectData& data, ForceData&, ForceData&) {
+    BondBook& book = BondBook::instance();
+    if (!data.computeflag) return;
+    book.intact = 0;
+    book.energy.elastic = 0.0;
+    if (book.request) book.made.clear();
+  }
+  void endPass(SurfacesIntersectData& data, ForceData&, ForceData&) {
+    if (data.computeflag) BondBook::instance().request.reset();
+  }
+
+  void surfacesIntersect(SurfacesIntersectData& data, ForceData& on_i, ForceData& on_j) {
+    act(data, on_i, on_j);
+  }
+  /// Surfaces that do not touch: only a bond acts. LIGGGHTS passes the larger structure here too,
+  /// but leaves what it holds beyond the smaller one unset.
+  void surfacesClose(SurfacesCloseData& close, ForceData& on_i, ForceData& on_j) {
+    auto& data = static_cast<SurfacesIntersectData&>(close);
+    if (!close.contact_history) return;
+    if (close.contact_history[bonded_] == 0.0 && !wanted(data, -1.0)) {
+      forget(data);
+      return;
+    }
+    data.r = std::sqrt(close.rsq);
+    data.rinv = 1.0 / data.r;
+    for (int k = 0; k < 3; ++k) data.en[k] = close.delta[k] * data.rinv;
+    data.omega_i = atom->omega[close.i];
+    data.omega_j = atom->omega[close.j];
+    const double mi = atom->rmass[close.i], mj = atom->rmass[close.j];
+    data.meff = mi * mj / (mi + mj);
+    act(data, on_i, on_j);
+  }
+
+ private:
+  template <const char* const& name>
+  void connect(PropertyRegistry& registry, double**& values) {
+    registry.registerProperty(name, &property<name>);
+    registry.connect(name, values, kName);
+  }
+
+  void fail(const std::string& text) { error->all(FLERR, text.c_str()); }
+
+  void check_settings() {
+    if (atom->map_style == 0) fail("bond/contact needs 'atom_modify map array'");
+  }
+
+  /// Bonds may stretch across a gap: the range in which a pair keeps its history must cover it,
+  /// or LIGGGHTS would drop the bond without a word.
+  void reserve_range(PropertyRegistry& registry) {
+    const BondBook& book = BondBook::instance();
+    const double gap = std::max(book.request ? book.request->gap : 0.0, book.largest_gap);
+    double stretch = 0.0;
+    int worst[2] = {1, 1};
+    for (int a = 1; a <= atom->ntypes; ++a)
+      for (int b = 1; b <= atom->ntypes; ++b) {
+        if (bond_normal_[a][b] <= 0.0) continue;
+        const double here = tensile_[a][b] * (1.0 + book.spread) / bond_normal_[a][b];
+        if (here <= stretch) continue;
+        stretch = here;
+        worst[0] = a;
+        worst[1] = b;
+      }
+    const double smallest = 2.0 * registry.min_radius(), reach = stretch + gap;
+    const double factor = 1.0 + 1.05 * reach / smallest;
+    if (factor > kLargestFactor)
+      fail(fmt::format(
+          "a bond of types {} and {} stretches by bondTensileStrength/bondNormalStiffness = {:.4g} "
+          "m "
+          "before it breaks, with a first gap of {:.4g} m; {:.4g} m is the most for the smallest "
+          "diameter, {:.4g} m. Raise bondNormalStiffness or lower bondTensileStrength",
+          worst[0], worst[1], stretch, gap, (kLargestFactor - 1.0) / 1.05 * smallest, smallest));
+    neighbor->register_contact_dist_factor(std::max(factor, 1.01));
+    const double meet = 2.0 * registry.max_radius() * factor + neighbor->skin;
+    for (int k = 0; k < domain->dimension; ++k)
+      if (domain->periodicity[k] && domain->prd[k] < 2.0 * meet)
+        fail(fmt::format(
+            "the box is {:.4g} m long in its periodic direction {}; two particles can meet there "
+            "through both sides, and their bond would be ambiguous. It takes at least {:.4g} m",
+            domain->prd[k], "xyz"[k], 2.0 * meet));
+  }
+
+  /// A new bond is asked for between the two. @param overlap  only its sign, in a gap, matters
+  bool wanted(const SurfacesIntersectData& d, double overlap) const {
+    const BondBook& book = BondBook::instance();
+    if (!book.request || !d.computeflag) return false;
+    const double exact = overlap < 0.0 ? d.radsum - std::sqrt(d.rsq) : overlap;
+    return book.request->wants(atom->tag[d.i], atom->tag[d.j], d.itype, d.jtype, exact);
+  }
+
+  void forget(SurfacesIntersectData& d) {
+    if (d.contact_flags) *d.contact_flags = 0;
+    std::fill_n(d.contact_history + bonded_, 5, 0.0);
+  }
+
+  dem::PairMemory remembered(const SurfacesIntersectData& d) const {
+    const double* h = d.contact_history + bonded_;
+    return {h[0] != 0.0, h[1], {h[2], h[3], h[4]}};
+  }
+  void remember(SurfacesIntersectData& d, const dem::PairMemory& m) {
+    double* h = d.contact_history + bonded_;
+    h[0] = m.bonded ? 1.0 : 0.0;
+    h[1] = m.rest_overlap;
+    for (int k = 0; k < 3; ++k) h[2 + k] = m.shear_force[k];
+  }
+
+  dem::ContactLaw contact_law(int a, int b) const {
+    return {contact_normal_[a][b], exponent_, contact_shear_[a][b], friction_[a][b],
+            damping_[a][b]};
+  }
+  dem::BondLaw bond_law(const SurfacesIntersectData& d) const {
+    const BondBook& book = BondBook::instance();
+    const double factor =
+        dem::strength_factor(atom->tag[d.i], atom->tag[d.j], book.spread, book.seed);
+    const int a = d.itype, b = d.jtype;
+    return {bond_normal_[a][b], bond_shear_[a][b], factor * tensile_[a][b], factor * shear_[a][b]};
+  }
+
+  /// Arms from the centres to the contact point, which divides the overlap in halves.
+  struct Arms {
+    double i, j;
+  };
+
+  dem::PairMotion motion(const SurfacesIntersectData& d, const Arms& arms) const {
+    dem::PairMotion m;
+    m.overlap = d.radsum - d.r;
+    m.effective_mass = d.meff;
+    m.step = update->dt;
+    double relative[3], spin[3];
+    for (int k = 0; k < 3; ++k) {
+      m.normal[k] = d.en[k];
+      relative[k] = d.v_i[k] - d.v_j[k];
+      spin[k] = arms.i * d.omega_i[k] + arms.j * d.omega_j[k];
+      m.normal_velocity += relative[k] * d.en[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3, n = (k + 2) % 3;
+      m.tangential_velocity[k] =
+          relative[k] - m.normal_velocity * d.en[k] - (spin[l] * d.en[n] - spin[n] * d.en[l]);
+    }
+    return m;
+  }
+
+  void act(SurfacesIntersectData& d, ForceData& on_i, ForceData& on_j) {
+    const double overlap = d.radsum - d.r;
+    const Arms arms{d.radi - 0.5 * overlap, d.radj - 0.5 * overlap};
+    const dem::ContactLaw contact = contact_law(d.itype, d.jtype);
+    const dem::BondLaw bond = bond_law(d);
+    dem::PairMemory memory = remembered(d);
+    const bool counted = d.computeflag && (d.j < atom->nlocal || atom->tag[d.i] < atom->tag[d.j]);
+    if (!memory.bonded && wanted(d, overlap)) {
+      dem::make_bond(memory, contact, bond, overlap);
+      BondBook& book = BondBook::instance();
+      book.largest_gap = std::max(book.largest_gap, -overlap);
+      if (counted) {
+        ++book.created;
+        book.made.emplace_back(atom->tag[d.i], atom->tag[d.j]);
+      }
+    }
+    const dem::PairMotion m = motion(d, arms);
+    const bool advance = d.computeflag && d.shearupdate;
+    const dem::PairResponse r = dem::respond(memory, contact, bond, m, advance);
+    if (d.computeflag) remember(d, memory);
+    if (counted) book(d, m, r, memory.bonded, arms.i, advance);
+    d.has_force_update = true;
+    if (!r.force) {
+      if (d.computeflag && advance) forget(d);
+      return;
+    }
+    if (d.contact_flags) *d.contact_flags |= CONTACT_NORMAL_MODEL;
+    d.Fn = r.normal;
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3, n = (k + 2) % 3;
+      const double total = r.normal * d.en[k] + r.tangential[k];
+      const double turn = d.en[l] * r.tangential[n] - d.en[n] * r.tangential[l];
+      on_i.delta_F[k] += total;
+      on_j.delta_F[k] -= total;
+      on_i.delta_torque[k] -= arms.i * turn;
+      on_j.delta_torque[k] -= arms.j * turn;
+    }
+  }
+
+  void book(const SurfacesIntersectData& d, const dem::PairMotion& m, const dem::PairResponse& r,
+            bool bonded, double arm, bool advance) {
+    BondBook& book = BondBook::instance();
+    if (bonded) ++book.intact;
+    if (ledger_) {
+      book.energy.elastic += r.energy.elastic;
+      if (advance) {
+        book.energy.friction += r.energy.friction;
+        book.energy.damping += r.energy.damping;
+        book.energy.released += r.energy.released;
+        book.energy.stiffness_change += r.energy.stiffness_change;
+      }
+    }
+    if (r.broken == dem::Break::None || !advance) return;
+    ++(r.broken == dem::Break::Tension ? book.broken_tension : book.broken_shear);
+    const long a = atom->tag[d.i], b = atom->tag[d.j];
+    dem::BreakEvent event{static_cast<long>(update->ntimestep),
+                          static_cast<double>(update->ntimestep) * update->dt,
+                          std::min(a, b),
+                          std::max(a, b),
+                          r.broken,
+                          r.break_force,
+                          {},
+                          m.normal};
+    for (int k = 0; k < 3; ++k) {
+      event.place[k] = atom->x[d.i][k] - arm * m.normal[k];
+      if (a > b) event.normal[k] = -event.normal[k];
+    }
+    book.events.push_back(event);
+  }
+
+  int bonded_ = 0;  // first of five values of a pair's history: PairMemory
+  double exponent_ = 1.0;
+  bool ledger_ = false;
+  double **contact_normal_ = nullptr, **contact_shear_ = nullptr, **friction_ = nullptr,
+         **damping_ = nullptr, **bond_normal_ = nullptr, **bond_shear_ = nullptr,
+         **tensile_ = nullptr, **shear_ = nullptr;  // [type][type], from 1
+};
+
+PairStyles::IGranularPairStyle* create(LAMMPS* lammps, LAMMPS_NS::PairGran* parent, int64_t hash) {
+  return new PairStyles::Granular<BondContactModel>(lammps, parent, hash);
+}
+
+}  // namespace
+}  // namespace LIGGGHTS::ContactModels
+
+namespace dem {
+
+BondBook& BondBook::instance() {
+  static BondBook book;
+  return book;
+}
+
+void register_bond_contact() {
+  using namespace LIGGGHTS;
+  ContactModels::Factory::instance().addNormalModel("bond/contact", ContactModels::kModelId);
+  PairStyles::Factory::instance().addStyle("gran", ContactModels::kModelId, &ContactModels::create);
+}
+
+}  // namespace dem
