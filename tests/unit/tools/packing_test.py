@@ -1,0 +1,91 @@
+"""tools/make_packing: bound of the overlaps, sizes, seeds, what it refuses, and LIGGGHTS reads it."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+BIN = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
+BOX = ["--box", "0", "0.06", "0", "0.03", "--diameter", "0.002", "0.004"]
+
+
+def make(folder, *more):
+    return subprocess.run([sys.executable, ROOT / "tools" / "packing.py", "--out", "p", *BOX, *more],
+                          cwd=folder, capture_output=True, text=True, check=False, timeout=100)
+
+
+def largest_overlap(discs, periodic):
+    """Brute force over all pairs, images included; overlap over the smaller radius."""
+    worst = 0.0
+    for i, (x, y, d) in enumerate(discs):
+        for x2, y2, d2 in discs[i + 1:]:
+            dx = abs(x - x2)
+            if periodic:
+                dx = min(dx, 0.06 - dx)
+            worst = max(worst, (0.5 * (d + d2) - np.hypot(dx, y - y2)) / (0.5 * min(d, d2)))
+        ends = [y - d / 2, 0.03 - y - d / 2] + ([] if periodic else [x - d / 2, 0.06 - x - d / 2])
+        worst = max(worst, -min(ends) / (0.5 * d))
+    return worst
+
+
+class Packing(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def discs(self):
+        return np.loadtxt(pathlib.Path(self.folder.name, "p.csv"), delimiter=",", skiprows=1)
+
+    def test_periodic_and_walled(self):
+        for periodic in (True, False):
+            job = make(self.folder.name, "--fraction", "0.78", *(["--periodic", "x"] if periodic else []))
+            self.assertEqual(job.returncode, 0, job.stdout + job.stderr)
+            discs = self.discs()
+            self.assertLessEqual(largest_overlap(discs, periodic), 1e-3 + 1e-6)
+            self.assertAlmostEqual(np.pi / 4 * (discs[:, 2] ** 2).sum() / (0.06 * 0.03), 0.78, delta=0.01)
+            self.assertGreaterEqual(discs[:, 2].min(), 0.002)
+            self.assertLessEqual(discs[:, 2].max(), 0.004)
+
+    def test_seed_and_count(self):
+        texts = []
+        for seed in ("1", "1", "2"):
+            job = make(self.folder.name, "--count", "60", "--law", "lognormal", "--seed", seed)
+            self.assertEqual(job.returncode, 0, job.stdout + job.stderr)
+            self.assertEqual(len(self.discs()), 60)
+            texts.append(pathlib.Path(self.folder.name, "p.csv").read_text())
+        self.assertEqual(texts[0], texts[1])
+        self.assertNotEqual(texts[0], texts[2])
+
+    def test_refusals(self):
+        for more, word in ((["--fraction", "0.95"], "cannot all fit"), (["--count", "900"], "cannot all fit")):
+            job = make(self.folder.name, *more)
+            self.assertEqual(job.returncode, 2)
+            self.assertIn(word, job.stderr)
+
+    def test_liggghts_reads_and_bonds_it(self):
+        self.assertEqual(make(self.folder.name, "--fraction", "0.8", "--periodic", "x").returncode, 0)
+        stiffness = {"contactNormalStiffness": 1e5, "contactShearStiffness": 1e5, "coefficientFriction": 0.3,
+                     "contactDampingRatio": 0.5, "bondNormalStiffness": 1e5, "bondShearStiffness": 1e5,
+                     "bondTensileStrength": 10, "bondShearStrength": 10}
+        properties = "".join(f"fix {n} all property/global {n} peratomtypepair 1 {v}\n" for n, v in stiffness.items())
+        pathlib.Path(self.folder.name, "in.bonds").write_text(
+            "dimension 2\nunits si\natom_style granular\natom_modify map array\nboundary p f p\nnewton off\n"
+            "communicate single vel yes\nregion box block 0 0.06 0 0.03 -0.5 0.5 units box\ncreate_box 1 box\n"
+            "neighbor 0.001 bin\nneigh_modify delay 0\nvariable disc_density equal 2000\ninclude p.liggghts\n"
+            + properties + "pair_style gran model bond/contact\npair_coeff * *\n"
+            "fix make all bond/create gap 1e-5\ntimestep 1e-6\nrun 1\n")
+        env = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        job = subprocess.run([BIN / "liggghts", "-in", "in.bonds"], cwd=self.folder.name, env=env,
+                             capture_output=True, text=True, check=False, timeout=60)
+        self.assertEqual(job.returncode, 0, job.stdout)
+        bonds = int(job.stdout.split("bonds created:")[1].split()[0])
+        self.assertGreater(bonds, len(self.discs()))  # a dense packing: more than two contacts a disc
+
+
+if __name__ == "__main__":
+    unittest.main()
