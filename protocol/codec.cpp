@@ -51,6 +51,7 @@ class Writer {
     *this << std::uint8_t{value.has_value()};
     return value ? *this << *value : *this;
   }
+  Writer& operator<<(const BondReport& b) { return *this << b.intact << b.broken << b.list; }
   Writer& operator<<(const Variable& v) { return *this << v.name << v.value; }
   Writer& operator<<(const StepHeader& h) { return *this << h.interval << h.time << h.flags; }
 
@@ -115,6 +116,7 @@ class Reader {
     if (present) *this >> value.emplace();
     return *this;
   }
+  Reader& operator>>(BondReport& b) { return *this >> b.intact >> b.broken >> b.list; }
   Reader& operator>>(Variable& v) { return *this >> v.name >> v.value; }
   Reader& operator>>(StepHeader& h) { return *this >> h.interval >> h.time >> h.flags; }
 
@@ -157,7 +159,7 @@ void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Answe
 }
 template <class Io, class M>
 void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, StateBatch> {
-  io(m.head, m.states, m.shapes);
+  io(m.head, m.states, m.shapes, m.bonds);
 }
 template <class Io, class M>
 void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, LoadBatch> {

@@ -11,7 +11,7 @@
 
 namespace protocol {
 
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 
 using Vec3 = std::array<double, 3>;
 
@@ -71,6 +71,7 @@ enum StepFlags : std::uint32_t {
   kLast = 1,  ///< states only: the final positions; the fluid does not advance any more
   kStop = 2,  ///< loads only: send one more state, flagged kLast, and leave
   kCheckpoint = 4,
+  kWantBonds = 8,  ///< loads only: list the bonds with the next states
 };
 
 struct StepHeader {
@@ -100,10 +101,23 @@ struct Load {
   Vec3 force{}, torque{};  ///< [N], [N m]
 };
 
+/// A bond between two particles, for pictures.
+struct Bond {
+  std::int64_t first = 0, second = 0;  ///< ids
+  std::int64_t state = 0;              ///< 0 intact, 1 broken by tension, 2 by shear
+};
+
+/// What a solid with bonds tells about them beside its states; counts are of the sending rank.
+struct BondReport {
+  std::int64_t intact = 0, broken = 0;
+  std::vector<Bond> list;  ///< empty unless it was asked for
+};
+
 struct StateBatch {
   StepHeader head;
   std::vector<State> states;
   std::vector<Shape> shapes;
+  std::optional<BondReport> bonds;  ///< to fluid rank 0 only; not kept in traces
 };
 
 struct LoadBatch {
@@ -125,7 +139,8 @@ struct Fault {
 /// "I have read your fault and cleaned up; you need not wait for me."
 struct Farewell {};
 
-static_assert(sizeof(State) == 80 && sizeof(Shape) == 40 && sizeof(Load) == 56,
+static_assert(sizeof(State) == 80 && sizeof(Shape) == 40 && sizeof(Load) == 56 &&
+                  sizeof(Bond) == 24,
               "records travel as raw memory: no padding");
 static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Shape> &&
               std::is_trivially_copyable_v<Load>);

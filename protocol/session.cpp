@@ -98,7 +98,7 @@ const Arrival& FluidSession::receive() {
     const Bytes frame =
         channel_.receive(r, {timeout_, fmt::format("the states of interval {}", next_interval_)});
     if (kind_of(frame) == Kind::Goodbye) {
-      arrival_ = {{next_interval_, 0.0, kLast}, {}, decode<Goodbye>(frame).reason};
+      arrival_ = {{next_interval_, 0.0, kLast}, {}, decode<Goodbye>(frame).reason, {}};
       continue;
     }
     batches.push_back(decode<StateBatch>(frame));
@@ -142,7 +142,15 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
   std::sort(origins.begin(), origins.end(),
             [&](const Origin& a, const Origin& b) { return state(a).id < state(b).id; });
 
-  arrival_ = {batches.front().head, {}, std::nullopt};
+  arrival_ = {batches.front().head, {}, std::nullopt, {}};
+  for (const StateBatch& batch : batches) {
+    if (!batch.bonds) continue;
+    if (!arrival_.bonds) arrival_.bonds.emplace();
+    arrival_.bonds->intact += batch.bonds->intact;
+    arrival_.bonds->broken += batch.bonds->broken;
+    arrival_.bonds->list.insert(arrival_.bonds->list.end(), batch.bonds->list.begin(),
+                                batch.bonds->list.end());
+  }
   for (std::size_t r = 0; r < batches.size(); ++r) order_[r].resize(batches[r].states.size());
   std::unordered_map<std::int64_t, Shape> present;
   for (const Origin& o : origins) {
@@ -195,9 +203,11 @@ void SolidSession::agree(const Hello& hello) {
 }
 
 SolidSession::Reply SolidSession::exchange(const StepHeader& head, std::span<const State> states,
-                                           std::span<const Shape> shapes) {
+                                           std::span<const Shape> shapes,
+                                           std::optional<BondReport> bonds) {
   const Stopwatch watch(waited_);
-  for (int r = 0; r < channel_->remote_size(); ++r) send_states(r, head, states, shapes);
+  for (int r = 0; r < channel_->remote_size(); ++r)
+    send_states(r, head, states, shapes, r == 0 ? bonds : std::nullopt);
   loads_.assign(states.size(), Load{});
   for (std::size_t i = 0; i < states.size(); ++i) loads_[i].id = states[i].id;
   Reply reply;
@@ -208,8 +218,9 @@ SolidSession::Reply SolidSession::exchange(const StepHeader& head, std::span<con
 }
 
 void SolidSession::send_states(int rank, const StepHeader& head, std::span<const State> states,
-                               std::span<const Shape> shapes) {
-  StateBatch batch{head, {}, {}};
+                               std::span<const Shape> shapes,
+                               const std::optional<BondReport>& bonds) {
+  StateBatch batch{head, {}, {}, bonds};
   auto& told = told_[rank];
   std::unordered_map<std::int64_t, Shape> told_now;
   sent_[rank].clear();

@@ -30,6 +30,7 @@ struct Arrival {
   StepHeader head;
   std::vector<Particle> particles;
   std::optional<std::string> goodbye;  ///< the solid left in good order; no particles then
+  std::optional<BondReport> bonds;     ///< summed over the solid's ranks
 };
 
 class FluidSession {
@@ -86,8 +87,9 @@ class SolidSession {
   /// Sends this rank's states and returns their loads, summed over fluid ranks in rank order; a
   /// particle that touches no fluid has none. With kLast nothing is waited for.
   /// @param states, shapes  one each a particle, same order
+  /// @param bonds  what a solid with bonds has to say of them
   Reply exchange(const StepHeader& head, std::span<const State> states,
-                 std::span<const Shape> shapes);
+                 std::span<const Shape> shapes, std::optional<BondReport> bonds = {});
 
   /// Leaves in good order instead of the next states.
   void goodbye(const std::string& reason);
@@ -96,7 +98,7 @@ class SolidSession {
 
  private:
   void send_states(int rank, const StepHeader& head, std::span<const State> states,
-                   std::span<const Shape> shapes);
+                   std::span<const Shape> shapes, const std::optional<BondReport>& bonds);
   std::uint32_t add_loads(int rank, const StepHeader& head);
 
   Channel* channel_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 
 #include "lbm_solver/base/errors.h"
 
@@ -54,6 +55,11 @@ Observers::Observers(const Scene& scene, const Plan& plan, const std::string& fo
   if (scene.output.fields_every > 0.0) fields_.emplace(folder, plan.units, keep);
 }
 
+bool Observers::draws_at(std::int64_t interval) const {
+  return fields_ &&
+         static_cast<double>(interval) * plan_.interval() >= next_field_ - 1e-9 * plan_.interval();
+}
+
 void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles) {
   const double time = static_cast<double>(interval) * plan_.interval();
   intervals_done_ = interval + 1;
@@ -66,12 +72,12 @@ void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Partic
     while (next_probe_ <= time)
       next_probe_ += std::max(scene_.output.probe_every, plan_.interval());
   }
-  if (fields_ && time >= next_field_ - 1e-9 * plan_.interval()) {
+  if (draws_at(interval)) {
     write_fields(time, fluid, particles);
     while (next_field_ <= time) next_field_ += scene_.output.fields_every;
   }
   if (seconds_since(last_progress_) > kProgressSeconds || intervals_done_ == plan_.intervals)
-    report_progress(interval);
+    report_progress(interval, particles);
 }
 
 void Observers::at_end(std::int64_t interval, Fluid& fluid, const Particles* particles) {
@@ -140,9 +146,24 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* part
       speed * plan_.units.velocity(), speed, kStopSpeed, scene_.fluid.velocity_scale));
 }
 
+/// Lines between the centres of bonded particles; across a periodic side there is none.
+void Observers::add_bonds(const Particles& particles, FieldFrame& frame) const {
+  std::unordered_map<std::int64_t, const protocol::State*> by_id;
+  for (const auto& p : particles.states()) by_id.emplace(p.state.id, &p.state);
+  const Vec2 half = 0.5 * scene_.box.size;
+  for (const protocol::Bond& bond : particles.bonds()->list) {
+    const auto a = by_id.find(bond.first), b = by_id.find(bond.second);
+    if (a == by_id.end() || b == by_id.end()) continue;  // one has left the box
+    const auto &x = a->second->x, &y = b->second->x;
+    if (std::abs(x[0] - y[0]) > half.x() || std::abs(x[1] - y[1]) > half.y()) continue;
+    frame.bond_ends.insert(frame.bond_ends.end(), {x[0], x[1], y[0], y[1]});
+    frame.bond_state.push_back(static_cast<double>(bond.state));
+  }
+}
+
 void Observers::write_fields(double time, Fluid& fluid, const Particles* particles) {
   const int nx = plan_.domain.nx, ny = plan_.domain.ny;
-  FieldFrame frame{time, nx, ny, {}, {}, {}, {}};
+  FieldFrame frame{time, nx, ny, {}, {}, {}, {}, {}, {}};
   std::vector<double> rho(nx), ux(nx), uy(nx);
   for (int y = 0; y < ny; ++y) {
     fluid.row(y, rho, ux, uy);
@@ -160,10 +181,11 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
       frame.particles.insert(frame.particles.end(),
                              {static_cast<double>(s.id), s.x[0], s.x[1], shape.radius, s.v[0],
                               s.v[1], s.omega[2], static_cast<double>(shape.type)});
+  if (particles && particles->bonds()) add_bonds(*particles, frame);
   fields_->write(frame);
 }
 
-void Observers::report_progress(std::int64_t interval) {
+void Observers::report_progress(std::int64_t interval, const Particles* particles) {
   last_progress_ = std::chrono::steady_clock::now();
   const double wall = seconds_since(start_);
   const double done = static_cast<double>(intervals_done_) / static_cast<double>(plan_.intervals);
@@ -174,7 +196,11 @@ void Observers::report_progress(std::int64_t interval) {
                         "updates/s, {} left, Ma {:.3f}, max |u| {:.4g} m/s",
                         interval, static_cast<double>(intervals_done_) * plan_.interval(),
                         100.0 * done, updates / wall * 1e-6, duration_text(wall / done - wall),
-                        last_speed_ * std::numbers::sqrt3, last_speed_ * plan_.units.velocity()));
+                        last_speed_ * std::numbers::sqrt3, last_speed_ * plan_.units.velocity()) +
+                (particles && particles->bonds()
+                     ? fmt::format(", bonds {} ({} broken)", particles->bonds()->intact,
+                                   particles->bonds()->broken)
+                     : ""));
 }
 
 Summary Observers::summary(double wall_seconds) const {

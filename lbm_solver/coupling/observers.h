@@ -42,6 +42,9 @@ class Observers {
   std::vector<double> state() const;
   void restore(const std::vector<double>& state);
 
+  /// A picture of the fields is due at this interval.
+  bool draws_at(std::int64_t interval) const;
+
   /// After an interval's loads are known. @param particles  null for a fluid alone
   /// @throws NumericsError
   void after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles);
@@ -56,9 +59,10 @@ class Observers {
 
  private:
   void guard(std::int64_t interval, Fluid& fluid, const Particles* particles);
+  void add_bonds(const Particles& particles, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
   void write_probes(double time, const Fluid& fluid, const Particles* particles, bool last);
-  void report_progress(std::int64_t interval);
+  void report_progress(std::int64_t interval, const Particles* particles);
 
   const Scene& scene_;
   const Plan& plan_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -38,6 +39,10 @@ inline constexpr double kLightRatio = 4.0, kVirtualMass = 2.0;
 class Particles {
  public:
   Particles(const Units& units, const Scene& scene);
+
+  /// What the solid told about its bonds with the particles; null where it has none.
+  const protocol::BondReport* bonds() const { return bonds_ ? &*bonds_ : nullptr; }
+  void tell_bonds(const std::optional<protocol::BondReport>& bonds) { bonds_ = bonds; }
 
   /// Takes the particles of a new interval of `interval` seconds.
   void arrive(std::span<const protocol::Particle> particles, double interval);
@@ -90,6 +95,7 @@ class Particles {
   std::vector<Disc> discs_;
   std::vector<DiscLoad> sums_;
   std::vector<protocol::Load> loads_;
+  std::optional<protocol::BondReport> bonds_;
 };
 
 }  // namespace lbm

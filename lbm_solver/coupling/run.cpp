@@ -63,6 +63,7 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
       break;
     }
     particles.arrive(arrival.particles, plan.interval());
+    particles.tell_bonds(arrival.bonds);
     if (arrival.head.flags & protocol::kLast) {
       observers.at_end(interval, fluid, &particles);
       break;
@@ -87,8 +88,9 @@ Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& cha
       particles.add(all.subspan(obstacles));
       clock.charge("loads");
     }
-    solid.answer(particles.mean_loads(plan.fluid_steps),
-                 interval + 1 >= end ? protocol::kStop : protocol::kContinue);
+    std::uint32_t flags = interval + 1 >= end ? protocol::kStop : protocol::kContinue;
+    if (interval + 1 >= end || observers.draws_at(interval + 1)) flags |= protocol::kWantBonds;
+    solid.answer(particles.mean_loads(plan.fluid_steps), flags);
     clock.charge("exchange");
     observers.after_interval(interval, fluid, &particles);
     clock.charge("output");

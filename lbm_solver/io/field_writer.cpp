@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
 #include <fstream>
 
@@ -66,12 +67,18 @@ void FieldWriter::keep_frames(double until) {
     const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
     const double time = protocol::hdf5::real_attribute(group, "time");
     if (time >= until) break;
-    const Handle set(H5Dopen2(group, "pressure", H5P_DEFAULT), H5Dclose, "open pressure");
-    const Handle space(H5Dget_space(set), H5Sclose, "read a space");
-    hsize_t shape[2];
-    check(H5Sget_simple_extent_dims(space, shape, nullptr), "read a size");
-    entries_.push_back({time, static_cast<int>(shape[1]), static_cast<int>(shape[0]),
-                        H5Lexists(group, "solid_fraction", H5P_DEFAULT) > 0});
+    const auto rows = [&](const char* name) -> std::array<hsize_t, 2> {
+      if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0};
+      const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open ") + name);
+      const Handle space(H5Dget_space(set), H5Sclose, "read a space");
+      std::array<hsize_t, 2> shape{0, 0};
+      check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read a size");
+      return shape;
+    };
+    const auto cells = rows("pressure");
+    entries_.push_back({time, static_cast<int>(cells[1]), static_cast<int>(cells[0]),
+                        rows("solid_fraction")[0] > 0, rows("particles")[0],
+                        rows("bond_state")[0]});
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
@@ -91,37 +98,104 @@ void FieldWriter::write(const FieldFrame& f) {
   write_array(group, "velocity", f.velocity, {ny, nx, 3});
   if (!f.solid_fraction.empty()) write_array(group, "solid_fraction", f.solid_fraction, {ny, nx});
   write_array(group, "particles", f.particles, {f.particles.size() / 8, 8});
-  entries_.push_back({f.time, f.nx, f.ny, !f.solid_fraction.empty()});
+  const hsize_t bonds = f.bond_state.size();
+  if (bonds > 0) {
+    write_array(group, "bond_ends", f.bond_ends, {2 * bonds, 2});
+    write_array(group, "bond_state", f.bond_state, {bonds});
+  }
+  if (!f.particles.empty()) {  // by columns, as ParaView wants them
+    std::vector<double> places, radius;
+    for (std::size_t i = 0; i < f.particles.size(); i += 8) {
+      places.insert(places.end(), {f.particles[i + 1], f.particles[i + 2]});
+      radius.push_back(f.particles[i + 3]);
+    }
+    write_array(group, "particle_places", places, {radius.size(), 2});
+    write_array(group, "particle_radius", radius, {radius.size()});
+  }
+  entries_.push_back(
+      {f.time, f.nx, f.ny, !f.solid_fraction.empty(), f.particles.size() / 8, bonds});
   write_xdmf();
 }
 
-void FieldWriter::write_xdmf() const {
-  std::ofstream out(folder_ + "/fields.xdmf");
-  out << R"(<?xml version="1.0"?>
-<Xdmf Version="3.0"><Domain><Grid Name="fluid" GridType="Collection" CollectionType="Temporal">
-)";
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const Entry& e = entries_[i];
-    const auto attribute = [&](const char* name, const char* kind, const std::string& shape) {
-      out << fmt::format(
-          R"(  <Attribute Name="{0}" AttributeType="{1}" Center="Cell"><DataItem Format="HDF" )"
-          R"(NumberType="Float" Precision="4" Dimensions="{2}">fields.h5:/{3}/{0}</DataItem></Attribute>)"
-          "\n",
-          name, kind, shape, group_name(i));
-    };
-    out << fmt::format(
-        R"(<Grid><Time Value="{:.9g}"/>
+namespace {
+
+/// A reference to an array of the file, as an XDMF item.
+std::string item(const std::string& path, const std::string& shape, int precision) {
+  return fmt::format(
+      R"(<DataItem Format="HDF" NumberType="Float" Precision="{}" Dimensions="{}">fields.h5:/{}</DataItem>)",
+      precision, shape, path);
+}
+
+}  // namespace
+
+std::string FieldWriter::fluid_grid(std::size_t index) const {
+  const Entry& e = entries_[index];
+  std::string out = fmt::format(
+      R"(<Grid><Time Value="{:.9g}"/>
   <Topology TopologyType="2DCoRectMesh" Dimensions="{} {}"/>
   <Geometry GeometryType="ORIGIN_DXDY"><DataItem Format="XML" Dimensions="2">{:.9g} {:.9g}</DataItem>)"
-        R"(<DataItem Format="XML" Dimensions="2">{:.9g} {:.9g}</DataItem></Geometry>
+      R"(<DataItem Format="XML" Dimensions="2">{:.9g} {:.9g}</DataItem></Geometry>
 )",
-        e.time, e.ny + 1, e.nx + 1, units_.origin.y(), units_.origin.x(), units_.dx, units_.dx);
-    attribute("pressure", "Scalar", fmt::format("{} {}", e.ny, e.nx));
-    attribute("velocity", "Vector", fmt::format("{} {} 3", e.ny, e.nx));
-    if (e.solids) attribute("solid_fraction", "Scalar", fmt::format("{} {}", e.ny, e.nx));
-    out << "</Grid>\n";
-  }
-  out << "</Grid></Domain></Xdmf>\n";
+      e.time, e.ny + 1, e.nx + 1, units_.origin.y(), units_.origin.x(), units_.dx, units_.dx);
+  const auto attribute = [&](const char* name, const char* kind, const std::string& shape) {
+    out += fmt::format(
+        "  <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n", name,
+        kind, item(group_name(index) + "/" + name, shape, 4));
+  };
+  attribute("pressure", "Scalar", fmt::format("{} {}", e.ny, e.nx));
+  attribute("velocity", "Vector", fmt::format("{} {} 3", e.ny, e.nx));
+  if (e.solids) attribute("solid_fraction", "Scalar", fmt::format("{} {}", e.ny, e.nx));
+  return out + "</Grid>\n";
+}
+
+std::string FieldWriter::particle_grid(std::size_t index) const {
+  const Entry& e = entries_[index];
+  const std::string group = group_name(index), n = fmt::format("{}", e.particles);
+  return fmt::format(
+      "<Grid><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyvertex\" "
+      "NumberOfElements=\"{}\"/>\n  <Geometry GeometryType=\"XY\">{}</Geometry>\n"
+      "  <Attribute Name=\"radius\" Center=\"Node\">{}</Attribute>\n</Grid>\n",
+      e.time, n, item(group + "/particle_places", n + " 2", 8),
+      item(group + "/particle_radius", n, 8));
+}
+
+std::string FieldWriter::bond_grid(std::size_t index) const {
+  const Entry& e = entries_[index];
+  const std::string group = group_name(index);
+  std::string nodes;
+  for (std::size_t i = 0; i < e.bonds; ++i) nodes += fmt::format("{} {} ", 2 * i, 2 * i + 1);
+  return fmt::format(
+      "<Grid><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
+      "NumberOfElements=\"{}\"><DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"{} 2\">{}"
+      "</DataItem></Topology>\n  <Geometry GeometryType=\"XY\">{}</Geometry>\n"
+      "  <Attribute Name=\"broken\" Center=\"Cell\">{}</Attribute>\n</Grid>\n",
+      e.time, e.bonds, e.bonds, nodes,
+      item(group + "/bond_ends", fmt::format("{} 2", 2 * e.bonds), 8),
+      item(group + "/bond_state", fmt::format("{}", e.bonds), 8));
+}
+
+/// Three timelines: the fluid, the particles and the bonds, the latter two where there are any.
+void FieldWriter::write_xdmf() const {
+  std::ofstream out(folder_ + "/fields.xdmf");
+  out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n";
+  const auto timeline = [&](const char* name, const auto& present, const auto& grid) {
+    std::string grids;
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+      if (present(entries_[i])) grids += grid(i);
+    if (!grids.empty())
+      out << fmt::format(
+          "<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n{}</Grid>\n",
+          name, grids);
+  };
+  timeline(
+      "fluid", [](const Entry&) { return true; }, [&](std::size_t i) { return fluid_grid(i); });
+  timeline(
+      "particles", [](const Entry& e) { return e.particles > 0; },
+      [&](std::size_t i) { return particle_grid(i); });
+  timeline(
+      "bonds", [](const Entry& e) { return e.bonds > 0; },
+      [&](std::size_t i) { return bond_grid(i); });
+  out << "</Domain></Xdmf>\n";
 }
 
 }  // namespace lbm

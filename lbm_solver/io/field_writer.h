@@ -17,6 +17,8 @@ struct FieldFrame {
   std::vector<float> velocity;        ///< [ny][nx][3] [m/s]
   std::vector<float> solid_fraction;  ///< [ny][nx]; empty without solids
   std::vector<double> particles;      ///< [n][8]: id, x, y, radius, vx, vy, omega, type
+  std::vector<double> bond_ends;      ///< [n][2][2]: x, y of both centres [m]
+  std::vector<double> bond_state;     ///< [n]: 0 intact, 1 broken by tension, 2 by shear
 };
 
 /// Writes frames to `fields.h5` and keeps `fields.xdmf` beside it, which ParaView opens. The file
@@ -30,11 +32,15 @@ class FieldWriter {
 
  private:
   void write_xdmf() const;
+  std::string fluid_grid(std::size_t index) const;
+  std::string particle_grid(std::size_t index) const;
+  std::string bond_grid(std::size_t index) const;
   void keep_frames(double until);
   struct Entry {
     double time;
     int nx, ny;
     bool solids;
+    std::size_t particles, bonds;
   };
   std::string folder_;
   Units units_;

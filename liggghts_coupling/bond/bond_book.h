@@ -49,9 +49,12 @@ struct BondBook {
 
   long created = 0, broken_tension = 0, broken_shear = 0;  ///< since the beginning
   long intact = 0;                                         ///< at the last force computation
-  EnergyFlow energy;                        ///< elastic now, the rest since the beginning [J]
-  std::vector<BreakEvent> events;           ///< not yet written
-  std::vector<std::pair<long, long>> made;  ///< pairs bonded by the last request
+  EnergyFlow energy;               ///< elastic now, the rest since the beginning [J]
+  std::vector<BreakEvent> events;  ///< not yet written
+  bool list_wanted = false;        ///< the coming force computations list the intact bonds
+  std::vector<std::pair<long, long>>
+      listed;                      ///< intact at the last force computation, where wanted
+  std::vector<BreakEvent> broken;  ///< all since the beginning of this process
 };
 
 }  // namespace dem

@@ -99,7 +99,7 @@ class BondContactModel : protected Pointers {
     if (!data.computeflag) return;
     book.intact = 0;
     book.energy.elastic = 0.0;
-    if (book.request) book.made.clear();
+    book.listed.clear();
   }
   void endPass(SurfacesIntersectData& data, ForceData&, ForceData&) {
     if (data.computeflag) BondBook::instance().request.reset();
@@ -247,10 +247,7 @@ class BondContactModel : protected Pointers {
       dem::make_bond(memory, contact, bond, overlap);
       BondBook& book = BondBook::instance();
       book.largest_gap = std::max(book.largest_gap, -overlap);
-      if (counted) {
-        ++book.created;
-        book.made.emplace_back(atom->tag[d.i], atom->tag[d.j]);
-      }
+      if (counted) ++book.created;
     }
     const dem::PairMotion m = motion(d, arms);
     const bool advance = d.computeflag && d.shearupdate;
@@ -278,7 +275,10 @@ class BondContactModel : protected Pointers {
   void book(const SurfacesIntersectData& d, const dem::PairMotion& m, const dem::PairResponse& r,
             bool bonded, double arm, bool advance) {
     BondBook& book = BondBook::instance();
-    if (bonded) ++book.intact;
+    if (bonded) {
+      ++book.intact;
+      if (book.list_wanted) book.listed.emplace_back(atom->tag[d.i], atom->tag[d.j]);
+    }
     if (ledger_) {
       book.energy.elastic += r.energy.elastic;
       if (advance) {
@@ -304,6 +304,7 @@ class BondContactModel : protected Pointers {
       if (a > b) event.normal[k] = -event.normal[k];
     }
     book.events.push_back(event);
+    book.broken.push_back(event);
   }
 
   int bonded_ = 0;  // first of five values of a pair's history: PairMemory

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "liggghts_coupling/host/fix_lbm_couple.h"
+#include "liggghts_coupling/bond/bond_book.h"
 
 #include <atom.h>
 #include <comm.h>
@@ -161,6 +162,18 @@ void FixLbmCouple::gather() {
   }
 }
 
+/// What there is to say about bonds; nothing where none was ever made.
+std::optional<protocol::BondReport> FixLbmCouple::bond_report() {
+  const BondBook& book = BondBook::instance();
+  if (book.created == 0 && book.intact == 0) return std::nullopt;
+  protocol::BondReport report{book.intact, book.broken_tension + book.broken_shear, {}};
+  if (!book.list_wanted) return report;
+  for (const auto& [a, b] : book.listed) report.list.push_back({a, b, 0});
+  for (const BreakEvent& e : book.broken)
+    report.list.push_back({e.first, e.second, e.mode == Break::Tension ? 1 : 2});
+  return report;
+}
+
 /// @param add_change  the forces of the step just done are still in f and will act in the next
 /// first
 ///                    half-step: replace the old load by the new one there too, so that the impulse
@@ -171,12 +184,13 @@ void FixLbmCouple::exchange(bool add_change) {
   const double interval = update->dt * substeps_;
   const protocol::StepHeader head{interval_, static_cast<double>(interval_) * interval,
                                   stop_asked_ ? protocol::kLast : protocol::kContinue};
-  const auto reply = coupling.session->exchange(head, states_, shapes_);
+  const auto reply = coupling.session->exchange(head, states_, shapes_, bond_report());
   if (stop_asked_) {
     coupling.over = true;
     return;
   }
   stop_asked_ = reply.flags & protocol::kStop;
+  BondBook::instance().list_wanted = reply.flags & protocol::kWantBonds;
   for (std::size_t n = 0; n < local_.size(); ++n) {
     const int i = local_[n];
     for (int k = 0; k < 3; ++k) {

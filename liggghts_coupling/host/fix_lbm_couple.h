@@ -45,6 +45,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void parse(int narg, char** arg);
   void begin_recording() const;
   void gather();
+  static std::optional<protocol::BondReport> bond_report();
   void exchange(bool add_change);
   [[noreturn]] void fail(const std::string& text) const;
 

@@ -67,6 +67,7 @@ TEST(Codec, EveryMessageSurvivesARoundTrip) {
 
 TEST(Codec, EmptyBatchesAreLegal) {
   EXPECT_TRUE(decode<StateBatch>(encode(StateBatch{})).states.empty());
+  EXPECT_FALSE(decode<StateBatch>(encode(StateBatch{})).bonds.has_value());
   EXPECT_TRUE(decode<LoadBatch>(encode(LoadBatch{})).loads.empty());
 }
 
@@ -115,6 +116,16 @@ TEST(Codec, NamesBothProtocolVersions) {
     EXPECT_NE(std::string(e.what()).find("protocol version"), std::string::npos) << e.what();
     EXPECT_EQ(e.exit_code(), kBadInput);
   }
+}
+
+TEST(Codec, BondsGoWithTheStates) {
+  StateBatch batch = test::sample_states(3, 2);
+  batch.bonds = BondReport{17, 4, {{1, 2, 0}, {2, 9, 1}}};
+  const auto back = decode<StateBatch>(encode(batch));
+  ASSERT_TRUE(back.bonds.has_value());
+  EXPECT_EQ(back.bonds->intact, 17);
+  EXPECT_EQ(back.bonds->broken, 4);
+  EXPECT_TRUE(test::same_bits(back.bonds->list, batch.bonds->list));
 }
 
 }  // namespace
