@@ -105,7 +105,8 @@ def command(args, out):
     first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
     if not os.path.exists(script):
         return first
-    solid = [str(bin_dir / "liggghts"), "-in", script, "-log", str(out / "liggghts.log"), "-screen", "none"]
+    solid = [str(bin_dir / "liggghts"), "-in", script, "-log", str(out / "liggghts.log"), "-screen", "none",
+             "-var", "out_folder", str(out)]
     return first + [":", "-np", str(args.solid_ranks), *solid]
 
 

@@ -45,12 +45,14 @@ bool defines(const Arguments& arguments, const std::string& variable) {
   return false;
 }
 
-/// The folder of the script, for what it includes.
-void add_scene_folder(Arguments& arguments) {
-  if (defines(arguments, "scene_folder")) return;
+/// The folder of the script, for what it includes, and the one for its output: the fluid's default.
+void add_folders(Arguments& arguments) {
   const auto folder = std::filesystem::path(option(arguments, "-in", "-i")).parent_path();
-  arguments.insert(arguments.end(),
-                   {"-var", "scene_folder", folder.empty() ? "." : folder.string()});
+  if (!defines(arguments, "scene_folder"))
+    arguments.insert(arguments.end(),
+                     {"-var", "scene_folder", folder.empty() ? "." : folder.string()});
+  if (!defines(arguments, "out_folder"))
+    arguments.insert(arguments.end(), {"-var", "out_folder", "out"});
 }
 
 /// What the fluid offers becomes a script variable, unless the command line has its own.
@@ -97,7 +99,7 @@ void run(Arguments& arguments) {
     if (option(arguments, "-in", "-i").empty())
       arguments.insert(arguments.end(), {"-in", "in.liggghts"});
     check_script(arguments);
-    add_scene_folder(arguments);
+    add_folders(arguments);
     coupling.session = std::make_unique<protocol::SolidSession>(*coupling.channel, kHelloSeconds);
     add_offered_variables(arguments, coupling.session->fluid());
   } else {

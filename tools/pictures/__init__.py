@@ -6,6 +6,8 @@ import pathlib
 import h5py
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.collections import LineCollection, PatchCollection
 
 plt.rcParams.update({
     "figure.dpi": 130, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
@@ -76,8 +78,33 @@ def draw_speed(axes, run, name, vmax, length_unit=1e-2):
     speed = np.hypot(frame["velocity"][..., 0], frame["velocity"][..., 1])
     extent = [0, p["box_x"] / length_unit, 0, p["box_y"] / length_unit]
     image = axes.imshow(speed, origin="lower", extent=extent, cmap="magma", vmin=0, vmax=vmax)
-    for _, x, y, radius, *_ in frame["particles"]:
-        axes.add_patch(plt.Circle((x / length_unit, y / length_unit), radius / length_unit,
-                                  facecolor="white", edgecolor="black", linewidth=0.8))
+    discs = [plt.Circle((x / length_unit, y / length_unit), radius / length_unit)
+             for _, x, y, radius, *_ in frame["particles"]]
+    axes.add_collection(PatchCollection(discs, facecolor="white", edgecolor="black", linewidth=0.8))
     axes.grid(False)
     return image
+
+
+def draw_bonds(axes, frame, length_unit=1e-2):
+    """Lines between bonded discs: intact green, broken by tension red, by shear blue."""
+    if "bond_state" not in frame:
+        return
+    ends = frame["bond_ends"].reshape(-1, 2, 2) / length_unit
+    near = np.hypot(*(ends[:, 0] - ends[:, 1]).T) < 0.01 / length_unit
+    for state, color, width in ((0, "tab:green", 0.8), (1, "tab:red", 1.4), (2, "tab:blue", 1.4)):
+        chosen = near & (frame["bond_state"] == state)
+        axes.add_collection(LineCollection(ends[chosen], colors=color, linewidths=width))
+
+
+def animate(run, name, draw, size, seconds=5.0):
+    """A GIF of all field frames. draw(axes, time, frame_name) draws one on cleared axes."""
+    frames = run.frames()
+    figure, axes = plt.subplots(figsize=size)
+
+    def step(i):
+        axes.clear()
+        draw(axes, *frames[i])
+
+    FuncAnimation(figure, step, frames=len(frames)).save(
+        run.folder / name, writer=PillowWriter(fps=max(1, round(len(frames) / seconds))), dpi=80)
+    plt.close(figure)
