@@ -53,7 +53,7 @@ struct ObstacleScene {
 };
 
 struct InitialScene {
-  enum class Kind { Rest, Uniform, TaylorGreen, ShearLayer };
+  enum class Kind { Rest, Uniform, Channel, TaylorGreen, ShearLayer };
   Kind kind = Kind::Rest;
   Vec2 velocity{0.0, 0.0};  ///< uniform [m/s]; x component: amplitude of the others
   double sharpness = 80.0;  ///< of the shear layers: kappa

@@ -208,8 +208,9 @@ InitialScene read_initial(TableReader t) {
   using Kind = InitialScene::Kind;
   InitialScene i;
   const std::string kind =
-      t.choice_or("kind", "rest", {"rest", "uniform", "taylor_green", "shear_layer"});
+      t.choice_or("kind", "rest", {"rest", "uniform", "channel", "taylor_green", "shear_layer"});
   i.kind = kind == "uniform"        ? Kind::Uniform
+           : kind == "channel"      ? Kind::Channel
            : kind == "taylor_green" ? Kind::TaylorGreen
            : kind == "shear_layer"  ? Kind::ShearLayer
                                     : Kind::Rest;

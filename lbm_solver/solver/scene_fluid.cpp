@@ -94,6 +94,8 @@ Start start(const InitialScene& i, const Units& units, double x, double y) {
       return {0.0, {0.0, 0.0}};
     case InitialScene::Kind::Uniform:
       return {0.0, u};
+    case InitialScene::Kind::Channel:
+      return {0.0, 4.0 * y * (1.0 - y) * u};
     case InitialScene::Kind::TaylorGreen:
       return {-0.75 * u0 * u0 * (std::cos(2.0 * k * x) + std::cos(2.0 * k * y)),
               {u0 * std::cos(k * x) * std::sin(k * y), -u0 * std::sin(k * x) * std::cos(k * y)}};

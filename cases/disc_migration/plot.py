@@ -1,0 +1,58 @@
+"""Results and pictures of disc_migration. Usage: plot.py OUT_FOLDER (tools/run calls it)."""
+
+import sys
+
+import matplotlib.pyplot as plt
+import numpy as np
+from pictures import Run, draw_speed, result, studies
+
+HEIGHT = 0.01
+PAPER = {"10 mm": 21 * 3600 + 31 * 60, "40 mm": 95 * 3600 + 26 * 60}  # s of wall time
+
+
+def track(run):
+    probe = run.probes()
+    return probe["time"], probe["y"]
+
+
+def difference(run, other):
+    """Largest difference of the heights over that of the channel."""
+    t, y = track(run)
+    return np.abs(y - np.interp(t, *track(other))).max() / HEIGHT
+
+
+def main():
+    run = Run(sys.argv[1])
+    others = studies(run)
+    results = []
+    for name, text in (("-_step4", "a quarter of the step"), ("fine_-", "half of the cell")):
+        if name in others:
+            # 2 % of the height: the goal
+            results.append(result(f"largest change of y(t) with {text}, over H", difference(run, others[name]),
+                                  "1", 0.0, "the same physics", 0.02, scale=1.0))
+    run.write_results(results)
+    labels = {"-_40mm": "from 9 mm, 40 mm long", "-_step4": "from 9 mm, step / 4", "fine_-": "from 9 mm, cell / 2"}
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.4), width_ratios=(1.6, 1))
+    left.plot(track(run)[0], 1e3 * track(run)[1], label="from 9 mm")
+    for name, other in others.items():
+        label = labels.get(name, f"from {name[-1]} mm")
+        left.plot(track(other)[0], 1e3 * track(other)[1], "--" if name in labels else "-", linewidth=1,
+                  label=label)
+        print(f"run | note | {label}: y = {1e3 * track(other)[1][-1]:.3f} mm at the end, "
+              f"{other.summary['wall_seconds']:.2f} s of wall time, {other.summary['steps']} steps")
+    paper = PAPER["40 mm" if run.summary["variant"] == "40mm" else "10 mm"]
+    print(f"run | note | the paper took {paper / 3600:.1f} h; here {paper / run.summary['wall_seconds']:.0f} times faster")
+    print(f"run | note | from 9 mm: y = {1e3 * track(run)[1][-1]:.3f} mm at the end, "
+          f"{run.summary['wall_seconds']:.2f} s of wall time, {run.summary['steps']} steps")
+    left.set_xlabel("time [s]")
+    left.set_ylabel("height of the disc [mm]")
+    left.legend(fontsize=7)
+    image = draw_speed(right, run, run.frames()[-1][1], None, length_unit=1e-3)
+    right.set_xlabel("x [mm]")
+    figure.colorbar(image, ax=right, label="speed [m/s]")
+    figure.tight_layout()
+    run.save(figure, "migration.png")
+
+
+if __name__ == "__main__":
+    main()
