@@ -103,7 +103,9 @@ double Particles::displaced_mass(std::size_t i) const {
 
 double Particles::virtual_mass(std::size_t i) const {
   if (coupling_.virtual_mass) return *coupling_.virtual_mass;
-  return particles_[i].shape.mass < kLightRatio * displaced_mass(i) ? kVirtualMass : 0.0;
+  const double tau = 0.5 + 3.0 * fluid_.viscosity * units_.dt / (units_.dx * units_.dx);
+  const double limit = tau > kViscousTau ? kViscousRatio : kLightRatio;
+  return particles_[i].shape.mass < limit * displaced_mass(i) ? kVirtualMass : 0.0;
 }
 
 void Particles::add_virtual_mass(std::size_t i, protocol::Load& load) const {

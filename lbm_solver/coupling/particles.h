@@ -12,10 +12,13 @@
 
 namespace lbm {
 
-/// Particles lighter than this times the fluid get a virtual mass unless the scene says otherwise:
-/// below 1 for stability, up to here because it takes a third of the noise out of the forces;
-/// and how much of it, over the mass that they displace.
-inline constexpr double kLightRatio = 4.0, kVirtualMass = 2.0;
+/// Which particles get a virtual mass unless the scene says otherwise, and how much of it, over the
+/// mass that they displace: those lighter than kLightRatio times the fluid; where the fluid is so
+/// viscous that a step carries momentum across a cell (τ above kViscousTau), those below
+/// kViscousRatio. Elsewhere it does harm: where surface cells are nearly transparent (τ → ½) the
+/// fluid answers it too late, and it blew up at ρ_s = ρ_f.
+inline constexpr double kLightRatio = 0.9, kViscousTau = 0.8, kViscousRatio = 2.0;
+inline constexpr double kVirtualMass = 2.0;
 
 /// The solid's particles between wire and lattice: SI states in, discs in lattice units out,
 /// lattice loads in, SI loads out.

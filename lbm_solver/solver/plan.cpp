@@ -161,6 +161,11 @@ void judge_step(const Scene& s, Plan& plan) {
         fmt::format("Re_h = {:.3g} exceeds {}: forces are noisy with {}; take collision = \"auto\" "
                     "or a finer cell",
                     plan.reynolds_cell, kLimitReynoldsCell, plan.kernel.collision));
+  if (s.coupling && s.particles->density.lo < 0.9 * s.fluid.density &&
+      plan.reynolds_cell > kLimitReynoldsCell)
+    plan.warnings.push_back(
+        "particles lighter than the fluid were proven stable up to Re_h = 5 only; watch their "
+        "forces");
   if (plan.kernel.collision == "trt" && plan.kernel.turbulence != "none")
     plan.warnings.push_back(
         "TRT with a turbulence model: its slow odd rate adds to the eddy viscosity where u ∇u is "
