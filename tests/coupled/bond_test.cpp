@@ -154,7 +154,7 @@ TEST(Bond, AClusterBreaksAlikeOnAnyNumberOfRanks) {
   std::vector<std::vector<double>> states;
   for (const int ranks : {1, 2, 4}) {
     Script script;
-    expect_ok(script.run(cluster("run 1500\n" + kFinalState), ranks));
+    expect_ok(script.run(cluster("run 11000\n" + kFinalState), ranks));
     events.push_back(rows(script.file("breaks.csv")));
     states.push_back(values(script.file("state.txt")));
   }
