@@ -46,6 +46,27 @@ void turn(Vector& shear, const Vector& normal) {
   scale(shear, after > 0.0 ? before / after : 0.0);
 }
 
+/// Sizes of the parts of a moment across and along the axis of the bond.
+struct Moments {
+  double bending, twisting;
+};
+Moments split(const Vector& moment, const Vector& normal) {
+  const double along = dot(moment, normal);
+  Vector across = moment;
+  add(across, -along, normal);
+  return {size(across), std::abs(along)};
+}
+
+/// Moves the moments of a bond with a section on.
+void bend(PairMemory& memory, const BondLaw& bond, const PairMotion& m) {
+  const double along = dot(m.turning, m.normal);
+  Vector across = m.turning;
+  add(across, -along, m.normal);
+  add(memory.moment, -bond.normal_stiffness * bond.section.gyration * m.step, across);
+  add(memory.moment, -2.0 * bond.shear_stiffness * bond.section.gyration * m.step * along,
+      m.normal);
+}
+
 /// Adds a dashpot's force along and across, and books what it takes.
 void damp(PairResponse& r, const PairMotion& m, double ratio, double normal_stiffness,
           double shear_stiffness, bool pull_allowed, bool slides) {
@@ -76,27 +97,37 @@ PairResponse respond(PairMemory& memory, const ContactLaw& contact, const BondLa
     add(now.shear_force, -(now.bonded ? bond.shear_stiffness : contact.shear_stiffness) * m.step,
         m.tangential_velocity);
   }
+  if (now.bonded && bond.section.radius > 0.0 && advance) bend(now, bond, m);
   if (now.bonded) {
     const double normal = bond.normal_stiffness * (m.overlap - now.rest_overlap);
     const double shear = size(now.shear_force);
+    const Moments moments = split(now.moment, m.normal);
     const double stored =
-        spring_energy(normal, bond.normal_stiffness) + spring_energy(shear, bond.shear_stiffness);
-    if (-normal >= bond.tensile_strength) {
+        spring_energy(normal, bond.normal_stiffness) + spring_energy(shear, bond.shear_stiffness) +
+        spring_energy(moments.bending, bond.normal_stiffness * bond.section.gyration) +
+        spring_energy(moments.twisting, 2.0 * bond.shear_stiffness * bond.section.gyration);
+    const double per_moment =
+        bond.section.radius > 0.0 ? bond.section.radius / bond.section.gyration : 0.0;
+    const double pulled = -normal + per_moment * moments.bending;
+    const double sheared = shear + 0.5 * per_moment * moments.twisting;
+    if (pulled >= bond.tensile_strength) {
       r.broken = Break::Tension;
-      r.break_force = -normal;
+      r.break_force = pulled;
       r.energy.released = stored;
       now = PairMemory{};
-    } else if (shear >= bond.shear_strength) {
+    } else if (sheared >= bond.shear_strength) {
       r.broken = Break::Shear;
-      r.break_force = shear;
+      r.break_force = sheared;
       r.energy.stiffness_change = stored - contact_energy(contact, m.overlap) -
                                   spring_energy(shear, contact.shear_stiffness);
       now.bonded = false;
       now.rest_overlap = 0.0;
+      now.moment = {};
     } else {
       r.force = true;
       r.normal = normal;
       r.tangential = now.shear_force;
+      r.moment = now.moment;
       r.energy.elastic = stored;
       damp(r, m, contact.damping_ratio, bond.normal_stiffness, bond.shear_stiffness, true, false);
     }

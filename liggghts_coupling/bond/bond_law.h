@@ -18,12 +18,25 @@ struct ContactLaw {
   double damping_ratio = 0.0;     ///< ξ of a dashpot 2ξ√(k m_eff), normal and tangential
 };
 
-/// Two springs at the contact point, no moment, no slip.
+/// Cross-section of a bond that carries moments too (a parallel bond), so that bending and twisting
+/// stretch its fibres. With A its area and I its second moment: a rectangle of half-height R̄ in two
+/// dimensions, I/A = R̄²/3; a disc of radius R̄ in three, I/A = R̄²/4.
+struct BondSection {
+  double radius = 0.0;    ///< R̄ [m]; 0: no moments
+  double gyration = 0.0;  ///< I/A [m²]
+  static BondSection of(double radius, bool three_dimensional) {
+    return {radius, radius * radius / (three_dimensional ? 4.0 : 3.0)};
+  }
+};
+
+/// Springs at the contact point, no slip: one along, one across; with a section one for each
+/// moment.
 struct BondLaw {
   double normal_stiffness = 0.0;  ///< K_n^b, tension and compression [N/m]
   double shear_stiffness = 0.0;   ///< K_t^b [N/m]
   double tensile_strength = 0.0;  ///< F_bn [N]
   double shear_strength = 0.0;    ///< F_bs [N]
+  BondSection section;
 };
 
 /// What a pair remembers from step to step.
@@ -31,6 +44,7 @@ struct PairMemory {
   bool bonded = false;
   double rest_overlap = 0.0;  ///< of the bond: F_n = K_n^b (δ - rest_overlap) [m]
   Vector shear_force{};       ///< on particle i, without damping [N]
+  Vector moment{};            ///< on particle i, of a bond with a section [N m]
 };
 
 /// Where a pair is and how it moves.
@@ -39,6 +53,7 @@ struct PairMotion {
   Vector normal{};               ///< unit, from j to i
   double normal_velocity = 0.0;  ///< of i against j along the normal; positive: parting [m/s]
   Vector tangential_velocity{};  ///< of i's surface against j's at the contact point [m/s]
+  Vector turning{};              ///< ω_i - ω_j, for moments [rad/s]
   double effective_mass = 0.0;   ///< m_i m_j/(m_i + m_j) [kg]
   double step = 0.0;             ///< [s]
 };
@@ -59,6 +74,7 @@ struct PairResponse {
   bool force = false;   ///< the pair still acts; false: it parted, its memory is empty
   double normal = 0.0;  ///< force on i along the normal, positive pushes apart [N]
   Vector tangential{};  ///< force on i [N]
+  Vector moment{};      ///< on i, the opposite on j [N m]
   Break broken = Break::None;
   double break_force = 0.0;  ///< that broke it [N]
   EnergyFlow energy;
@@ -74,6 +90,9 @@ void make_bond(PairMemory& memory, const ContactLaw& contact, const BondLaw& bon
 ///   bonded       F_n = K_n^b (δ - rest). At F_n ≤ -F_bn it breaks by tension: both forces vanish.
 ///                At |F_t| ≥ F_bs it breaks by shear: the contact law goes on with this shear
 ///                force.
+///   with a section (parallel bond): bending M_b ← M_b - K_n^b I/A ω_b Δt, twisting M_t ← M_t -
+///                2 K_t^b I/A ω_t Δt; what breaks is the most stretched fibre: -F_n + |M_b| R̄A/I ≥
+///                F_bn, |F_t| + |M_t| R̄A/2I ≥ F_bs
 ///   contact      F_n = K_n δ^m for δ > 0, |F_t| ≤ μ F_n
 /// @param advance  false: forces of the present state only, nothing moves on (a second look at the
 ///                 same step)

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "liggghts_coupling/bond/pair_bond_contact.h"
+#include "liggghts_coupling/bond/pair_bond.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/mpi_guards.h"
 #include "liggghts_coupling/host/register_styles.h"
@@ -75,7 +75,7 @@ void check_script(const Arguments& arguments) {
 void run_script(Arguments& arguments, MPI_Comm local) {
   std::vector<char*> argv;
   for (std::string& a : arguments) argv.push_back(a.data());
-  register_bond_contact();
+  register_bonds();
   auto* lammps = new LAMMPS_NS::LAMMPS(static_cast<int>(argv.size()), argv.data(), local);
   register_styles(*lammps);
   if (Coupling::instance().channel)

@@ -286,6 +286,39 @@ TEST(Bond, EnergyOfABreakingClusterIsAccountedFor) {
   EXPECT_NEAR(sum.back() / sum.front(), 1.0, 0.01);
 }
 
+/// Tip deflection of a clamped beam of discs under a force at its end, at rest.
+double cantilever(const std::string& model_name, int discs, double force) {
+  std::string text = head();
+  for (int i = 0; i < discs; ++i) text += disc(0.1 + 0.05 * i, 0.5);
+  std::ostringstream load;
+  load << "group clamp id 1\ngroup tip id " << discs
+       << "\ngroup beam subtract all clamp\nfix move beam nve/sphere\n"
+          "fix pull tip addforce 0.0 "
+       << force
+       << " 0.0\nfix slow all viscous 8.0\nfix flat all enforce2d\nfix still clamp freeze\n"
+          "timestep 5e-5\nrun 160000\n";
+  Script script;
+  expect_ok(
+      script.run(text + "set type 1 diameter 0.05 density 1000\n" +
+                 test::replaced(model({1e5, 1e5, 1e3, 1e9, 0.5}), "bond/contact", model_name) +
+                 kBonds + load.str() + kFinalState));
+  const std::vector<double> state = values(script.file("state.txt"));
+  return state[6 * (discs - 1) + 2] - 0.5;  // id x y …
+}
+
+TEST(ParallelBond, ACantileverBendsLikeABeam) {
+  // EI = K_n^b l I/A, I/A = R̄²/3; clamped at the first disc's centre: F L³/3EI + F L/(K_t^b l), the
+  // bonds' joints in the middle between the discs: sum over them.
+  const int discs = 10;
+  const double l = 0.05, r = 0.025, k = 1e5, force = 0.05;
+  double exact = 0.0;
+  for (int i = 0; i < discs - 1; ++i) {
+    const double arm = (discs - 1 - i - 0.5) * l;  // of the force about the joint
+    exact += force * arm * arm / (k * r * r / 3.0) + force / k;
+  }
+  EXPECT_NEAR(cantilever("bond/parallel", discs, force) / exact, 1.0, 0.02);
+}
+
 TEST(BondCreate, ByTypeAndByList) {
   const std::string three = head() + disc(0.4, 0.5) + disc(0.5, 0.5) + disc(0.6, 0.5) +
                             "set type 1 diameter 0.1 density 1000\n" + model({});

@@ -212,6 +212,51 @@ TEST(BondLaw, EnergyIsAccountedFor) {
   }
 }
 
+BondLaw parallel_bond(double tensile = 1e9, double shear = 1e9, bool three_dimensional = false) {
+  return {2e5, 1e5, tensile, shear, BondSection::of(0.01, three_dimensional)};
+}
+
+TEST(ParallelBond, BendsWithItsSecondMoment) {
+  PairMemory memory;
+  make_bond(memory, kContact, parallel_bond(), 0.0);
+  PairMotion m = at(0.0);
+  m.turning = {0.0, 0.0, 2.0};
+  PairResponse r;
+  for (int k = 0; k < 100; ++k) r = respond(memory, kContact, parallel_bond(), m, true);
+  // K_n^b I/A θ: 2e5 · 1e-4/3 · 2e-3 rad; no force, and all of it stored
+  EXPECT_NEAR(r.moment[2], -2e5 * 1e-4 / 3.0 * 2e-3, 1e-12);
+  EXPECT_EQ(r.normal, 0.0);
+  EXPECT_NEAR(r.energy.elastic, 0.5 * 2e5 * 1e-4 / 3.0 * 4e-6, 1e-15);
+}
+
+TEST(ParallelBond, TwistsInThreeDimensions) {
+  PairMemory memory;
+  const BondLaw bond = parallel_bond(1e9, 1e9, true);
+  make_bond(memory, kContact, bond, 0.0);
+  PairMotion m = at(0.0);
+  m.turning = {3.0, 0.0, 0.0};  // about the axis
+  PairResponse r;
+  for (int k = 0; k < 100; ++k) r = respond(memory, kContact, bond, m, true);
+  EXPECT_NEAR(r.moment[0], -2.0 * 1e5 * 1e-4 / 4.0 * 3e-3, 1e-12);  // 2 K_t^b I/A θ
+}
+
+TEST(ParallelBond, BreaksAtItsMostStretchedFibre) {
+  // M R̄A/I = F_bn: θ = F_bn/(K_n^b R̄) = 6/(2e5 · 0.01) = 3e-3 rad = 150 steps of 2e-5
+  const BondLaw bond = parallel_bond(6.0);
+  PairMemory memory;
+  make_bond(memory, kContact, bond, 0.0);
+  PairMotion m = at(0.0);
+  m.turning = {0.0, 0.0, 2.0};
+  PairResponse r;
+  int steps = 0;
+  for (; r.broken == Break::None && steps < 1000; ++steps)
+    r = respond(memory, kContact, bond, m, true);
+  EXPECT_EQ(r.broken, Break::Tension);
+  EXPECT_NEAR(steps, 150, 1);
+  EXPECT_EQ(memory.moment[2], 0.0);
+  EXPECT_NEAR(r.energy.released, 0.5 * 2e5 * 1e-4 / 3.0 * 9e-6, 1e-6);
+}
+
 TEST(StrengthFactor, IsTheSameInAnyOrderAndSpreadEvenly) {
   double sum = 0.0, lo = 2.0, hi = 0.0;
   for (long k = 0; k < 10000; ++k) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// `pair_style gran model bond/contact [exponent 1|1.5] [ledger on]`: the bond law as a LIGGGHTS
-/// granular model. Its history, its way over ranks and into restart files are LIGGGHTS' own.
-#include "liggghts_coupling/bond/pair_bond_contact.h"
+/// `pair_style gran model bond/contact|bond/parallel [exponent 1|1.5] [ledger on] [radius R]`: the
+/// bond law as a LIGGGHTS granular model. Its history, its way over ranks and into restart files
+/// are LIGGGHTS' own.
+#include "liggghts_coupling/bond/pair_bond.h"
 
 // The order of these matters: fix_insert_stream.h before pair_gran_base.h.
 // clang-format off
@@ -33,8 +34,17 @@ namespace {
 using dem::BondBook;
 using LAMMPS_NS::LAMMPS;
 
-constexpr int kModelId = 60;  // 6 bits; the library uses 0 … 9
-constexpr const char* kName = "model bond/contact";
+/// What `pair_style gran model` calls the two kinds of bonds; 6-bit ids, the library uses 0 … 9.
+struct ContactBond {
+  static constexpr int id = 60;
+  static constexpr const char* name = "bond/contact";
+  static constexpr bool moments = false;
+};
+struct ParallelBond {
+  static constexpr int id = 61;
+  static constexpr const char* name = "bond/parallel";
+  static constexpr bool moments = true;
+};
 constexpr double kLargestFactor = 1.5;  // reach of a pair's history over the sum of radii
 
 /// A property per pair of types, by its name in the script.
@@ -51,28 +61,37 @@ constexpr const char* kBondShear = "bondShearStiffness";
 constexpr const char* kTensile = "bondTensileStrength";
 constexpr const char* kShear = "bondShearStrength";
 
-class BondContactModel : protected Pointers {
+template <class Kind>
+class BondModel : protected Pointers {
  public:
-  BondContactModel(LAMMPS* lammps, IContactHistorySetup* history, bool is_wall, const int64_t)
+  BondModel(LAMMPS* lammps, IContactHistorySetup* history, bool is_wall, const int64_t)
       : Pointers(lammps) {
     if (is_wall)
-      error->all(FLERR, "bond/contact is no wall model; use fix wall/gran model hooke/stiffness");
+      fail(std::string(Kind::name) + " is no wall model; use fix wall/gran model hooke/stiffness");
     bonded_ = history->add_history_value("bonded", "0");
     history->add_history_value("bondRestOverlap", "0");
     // "1": seen from the other particle, with the other sign
     for (const char* name : {"shearForceX", "shearForceY", "shearForceZ"})
       history->add_history_value(name, "1");
+    if constexpr (Kind::moments)
+      for (const char* name : {"momentX", "momentY", "momentZ"})
+        history->add_history_value(name, "1");
   }
 
-  int64_t hashcode() { return kModelId; }
+  int64_t hashcode() { return Kind::id; }
   void registerSettings(Settings& settings) {
     settings.registerDoubleSetting("exponent", exponent_, 1.0);
     settings.registerOnOff("ledger", ledger_, false);
+    if constexpr (Kind::moments) settings.registerDoubleSetting("radius", radius_, 1.0);
   }
   void postSettings(IContactHistorySetup*) {
     if (exponent_ != 1.0 && exponent_ != 1.5)
-      error->all(FLERR,
-                 "pair_style gran model bond/contact: exponent is 1 (linear) or 1.5 (Hertz)");
+      fail(std::string("pair_style gran model ") + Kind::name +
+           ": exponent is 1 (linear) or 1.5 (Hertz)");
+    if (radius_ <= 0.0 || radius_ > 1.0)
+      fail(
+          "pair_style gran model bond/parallel: radius, of the bond over the smaller particle, is "
+          "above 0 and at most 1");
   }
   void connectToProperties(PropertyRegistry& registry) {
     connect<kContactNormal>(registry, contact_normal_);
@@ -88,7 +107,7 @@ class BondContactModel : protected Pointers {
   }
   int get_history_offset(const std::string&) { return -1; }
   bool contact_match(const std::string& type, const std::string& model) {
-    return type == "normal" && model == "bond/contact";
+    return type == "normal" && model == Kind::name;
   }
   double stressStrainExponent() { return exponent_; }
   bool checkSurfaceIntersect(SurfacesIntersectData&) { return true; }
@@ -131,13 +150,13 @@ class BondContactModel : protected Pointers {
   template <const char* const& name>
   void connect(PropertyRegistry& registry, double**& values) {
     registry.registerProperty(name, &property<name>);
-    registry.connect(name, values, kName);
+    registry.connect(name, values, Kind::name);
   }
 
   void fail(const std::string& text) { error->all(FLERR, text.c_str()); }
 
   void check_settings() {
-    if (atom->map_style == 0) fail("bond/contact needs 'atom_modify map array'");
+    if (atom->map_style == 0) fail(std::string(Kind::name) + " needs 'atom_modify map array'");
   }
 
   /// Bonds may stretch across a gap: the range in which a pair keeps its history must cover it,
@@ -185,18 +204,23 @@ class BondContactModel : protected Pointers {
 
   void forget(SurfacesIntersectData& d) {
     if (d.contact_flags) *d.contact_flags = 0;
-    std::fill_n(d.contact_history + bonded_, 5, 0.0);
+    std::fill_n(d.contact_history + bonded_, Kind::moments ? 8 : 5, 0.0);
   }
 
   dem::PairMemory remembered(const SurfacesIntersectData& d) const {
     const double* h = d.contact_history + bonded_;
-    return {h[0] != 0.0, h[1], {h[2], h[3], h[4]}};
+    dem::PairMemory memory{h[0] != 0.0, h[1], {h[2], h[3], h[4]}, {}};
+    if constexpr (Kind::moments) memory.moment = {h[5], h[6], h[7]};
+    return memory;
   }
   void remember(SurfacesIntersectData& d, const dem::PairMemory& m) {
     double* h = d.contact_history + bonded_;
     h[0] = m.bonded ? 1.0 : 0.0;
     h[1] = m.rest_overlap;
-    for (int k = 0; k < 3; ++k) h[2 + k] = m.shear_force[k];
+    for (int k = 0; k < 3; ++k) {
+      h[2 + k] = m.shear_force[k];
+      if constexpr (Kind::moments) h[5 + k] = m.moment[k];
+    }
   }
 
   dem::ContactLaw contact_law(int a, int b) const {
@@ -208,7 +232,12 @@ class BondContactModel : protected Pointers {
     const double factor =
         dem::strength_factor(atom->tag[d.i], atom->tag[d.j], book.spread, book.seed);
     const int a = d.itype, b = d.jtype;
-    return {bond_normal_[a][b], bond_shear_[a][b], factor * tensile_[a][b], factor * shear_[a][b]};
+    dem::BondLaw law{
+        bond_normal_[a][b], bond_shear_[a][b], factor * tensile_[a][b], factor * shear_[a][b], {}};
+    if constexpr (Kind::moments)
+      law.section =
+          dem::BondSection::of(radius_ * std::min(d.radi, d.radj), domain->dimension == 3);
+    return law;
   }
 
   /// Arms from the centres to the contact point, which divides the overlap in halves.
@@ -226,6 +255,7 @@ class BondContactModel : protected Pointers {
       m.normal[k] = d.en[k];
       relative[k] = d.v_i[k] - d.v_j[k];
       spin[k] = arms.i * d.omega_i[k] + arms.j * d.omega_j[k];
+      if constexpr (Kind::moments) m.turning[k] = d.omega_i[k] - d.omega_j[k];
       m.normal_velocity += relative[k] * d.en[k];
     }
     for (int k = 0; k < 3; ++k) {
@@ -267,8 +297,8 @@ class BondContactModel : protected Pointers {
       const double turn = d.en[l] * r.tangential[n] - d.en[n] * r.tangential[l];
       on_i.delta_F[k] += total;
       on_j.delta_F[k] -= total;
-      on_i.delta_torque[k] -= arms.i * turn;
-      on_j.delta_torque[k] -= arms.j * turn;
+      on_i.delta_torque[k] += r.moment[k] - arms.i * turn;
+      on_j.delta_torque[k] -= r.moment[k] + arms.j * turn;
     }
   }
 
@@ -307,19 +337,28 @@ class BondContactModel : protected Pointers {
     book.broken.push_back(event);
   }
 
-  int bonded_ = 0;  // first of five values of a pair's history: PairMemory
+  int bonded_ = 0;  // first of the values of a pair's history: PairMemory
   double exponent_ = 1.0;
   bool ledger_ = false;
+  double radius_ = 1.0;  // of the section over the smaller particle's
   double **contact_normal_ = nullptr, **contact_shear_ = nullptr, **friction_ = nullptr,
          **damping_ = nullptr, **bond_normal_ = nullptr, **bond_shear_ = nullptr,
          **tensile_ = nullptr, **shear_ = nullptr;  // [type][type], from 1
 };
 
+template <class Kind>
 PairStyles::IGranularPairStyle* create(LAMMPS* lammps, LAMMPS_NS::PairGran* parent, int64_t hash) {
-  return new PairStyles::Granular<BondContactModel>(lammps, parent, hash);
+  return new PairStyles::Granular<BondModel<Kind>>(lammps, parent, hash);
 }
 
 }  // namespace
+
+template <class Kind>
+static void add_model() {
+  Factory::instance().addNormalModel(Kind::name, Kind::id);
+  PairStyles::Factory::instance().addStyle("gran", Kind::id, &create<Kind>);
+}
+
 }  // namespace LIGGGHTS::ContactModels
 
 namespace dem {
@@ -329,10 +368,9 @@ BondBook& BondBook::instance() {
   return book;
 }
 
-void register_bond_contact() {
-  using namespace LIGGGHTS;
-  ContactModels::Factory::instance().addNormalModel("bond/contact", ContactModels::kModelId);
-  PairStyles::Factory::instance().addStyle("gran", ContactModels::kModelId, &ContactModels::create);
+void register_bonds() {
+  LIGGGHTS::ContactModels::add_model<LIGGGHTS::ContactModels::ContactBond>();
+  LIGGGHTS::ContactModels::add_model<LIGGGHTS::ContactModels::ParallelBond>();
 }
 
 }  // namespace dem

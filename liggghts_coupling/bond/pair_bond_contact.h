@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
-#pragma once
-
-namespace dem {
-
-/// Makes `pair_style gran model bond/contact` known to LIGGGHTS. Before the first input line.
-void register_bond_contact();
-
-}  // namespace dem
