@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, result
+from pictures import Run, draw_snapshots, result
 
 SOURCE = "what every published simulation shows"
 
@@ -37,18 +37,7 @@ def main():
     bottom.set_xlabel("time [s]")
     run.save(figure, "history.png")
 
-    frames = run.frames()
-    chosen = [min(frames, key=lambda f: abs(f[0] - time)) for time in (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
-              if time <= frames[-1][0] + 0.13]
-    figure, axes = plt.subplots(1, len(chosen), figsize=(1.2 * len(chosen) + 0.8, 4.4), sharey=True,
-                                squeeze=False)
-    for ax, (time, name) in zip(axes[0], chosen):
-        image = draw_speed(ax, run, name, 0.025)
-        ax.set_title(f"{time:.2f} s")
-        ax.set_xlabel("x [cm]")
-    axes[0][0].set_ylabel("y [cm]")
-    figure.colorbar(image, ax=axes, label="speed of the fluid [m/s]", fraction=0.03, pad=0.02)
-    run.save(figure, "field.png")
+    draw_snapshots(run, (0.5, 1.0, 1.5, 2.0, 2.5, 3.0), 0.025, width=1.2)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, result, studies
+from pictures import Run, draw_snapshots, result, studies
 
 FALLING = (8e-3, 15e-3)  # m: heights between which the terminal velocity is taken
 # Another code at D/Δx = 25, as a value to stay near to: the paper gives figures only.
@@ -85,17 +85,7 @@ def main():
     bottom.set_xlabel("time [s]")
     run.save(figure, "fall.png")
 
-    frames = run.frames()
-    chosen = frames[1::max(1, len(frames) // 6)][:6]
-    figure, axes = plt.subplots(1, len(chosen), figsize=(1.5 * len(chosen) + 0.8, 4.2), sharey=True,
-                                squeeze=False)
-    for ax, (time, name) in zip(axes[0], chosen):
-        image = draw_speed(ax, run, name, 0.4, length_unit=1e-3)
-        ax.set_title(f"t = {time:.2f} s")
-        ax.set_xlabel("x [mm]")
-    axes[0][0].set_ylabel("y [mm]")
-    figure.colorbar(image, ax=axes, label="speed of the fluid [m/s]", fraction=0.03, pad=0.02)
-    run.save(figure, "field.png")
+    draw_snapshots(run, (0.02, 0.06, 0.1, 0.14, 0.18, 0.24), 0.4, length_unit=1e-3)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, result, studies
+from pictures import Run, draw_snapshots, result, studies
 
 # Maximum Reynolds number rho_s d U / mu in the literature: 17.27 (Glowinski et al. 2001, h = 1/192)
 # to 17.42 (Wan and Turek 2006); their middle is the reference, 3 % of it the tolerance.
@@ -44,22 +44,6 @@ def judged(run, others):
                               "rests; 0.1 % of the largest speed", 0.001,
                               scale=np.abs(probe["vy"]).max()))
     return results
-
-
-def picture_field(run):
-    frames = run.frames()
-    wanted = [0.05, 0.2, 0.4, 0.6, 0.75, 1.0]
-    chosen = [min(frames, key=lambda f: abs(f[0] - t)) for t in wanted if t <= frames[-1][0] + 0.03]
-    vmax = np.abs(run.probes()["vy"]).max() * 1.05
-    figure, axes = plt.subplots(1, len(chosen), figsize=(1.45 * len(chosen) + 0.8, 4.0), sharey=True,
-                                squeeze=False)
-    for ax, (time, name) in zip(axes[0], chosen):
-        image = draw_speed(ax, run, name, vmax)
-        ax.set_title(f"t = {time:.2f} s")
-        ax.set_xlabel("x [cm]")
-    axes[0][0].set_ylabel("y [cm]")
-    figure.colorbar(image, ax=axes, label="speed of the fluid [m/s]", fraction=0.03, pad=0.02)
-    run.save(figure, "field.png")
 
 
 def picture_history(run, others):
@@ -119,7 +103,7 @@ def main():
     run = Run(pathlib.Path(sys.argv[1]))
     others = studies(run)
     run.write_results(judged(run, others))
-    picture_field(run)
+    draw_snapshots(run, (0.05, 0.2, 0.4, 0.6, 0.75, 1.0), 1.05 * np.abs(run.probes()["vy"]).max())
     picture_history(run, others)
     picture_resolution(run, others)
     for name, other in others.items():

@@ -108,3 +108,19 @@ def animate(run, name, draw, size, seconds=5.0):
     FuncAnimation(figure, step, frames=len(frames)).save(
         run.folder / name, writer=PillowWriter(fps=max(1, round(len(frames) / seconds))), dpi=80)
     plt.close(figure)
+
+
+def draw_snapshots(run, times, vmax, length_unit=1e-2, width=1.45):
+    """A row of pictures of the fluid's speed at the frames nearest to the times [s], as field.png."""
+    unit = {1e-2: "cm", 1e-3: "mm"}[length_unit]
+    frames = run.frames()
+    chosen = [min(frames, key=lambda f: abs(f[0] - t)) for t in times if t <= 1.05 * frames[-1][0]]
+    figure, axes = plt.subplots(1, len(chosen), figsize=(width * len(chosen) + 0.8, 4.2), sharey=True,
+                                squeeze=False)
+    for ax, (time, name) in zip(axes[0], chosen):
+        image = draw_speed(ax, run, name, vmax, length_unit)
+        ax.set_title(f"t = {time:.2f} s")
+        ax.set_xlabel(f"x [{unit}]")
+    axes[0][0].set_ylabel(f"y [{unit}]")
+    figure.colorbar(image, ax=axes, label="speed of the fluid [m/s]", fraction=0.03, pad=0.02)
+    run.save(figure, "field.png")
