@@ -30,6 +30,11 @@ def main():
             # 2 % of the height: the goal
             results.append(result(f"largest change of y(t) with {text}, over H", difference(run, others[name]),
                                   "1", 0.0, "the same physics", 0.02, scale=1.0))
+    ends = [others.pop(name) for name in ("-_equilibrium9", "-_equilibrium6") if name in others]
+    if len(ends) == 2:
+        high, low = (track(r)[1][-1] / HEIGHT for r in ends)
+        # 0.01 H: what is asked of two starts
+        results.append(result("height at rest from 9 mm, over H", high, "1", low, "the one from 6 mm", 0.01, scale=1.0))
     run.write_results(results)
     labels = {"-_40mm": "from 9 mm, 40 mm long", "-_step4": "from 9 mm, step / 4", "fine_-": "from 9 mm, cell / 2"}
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.4), width_ratios=(1.6, 1))
