@@ -69,11 +69,10 @@ void bend(PairMemory& memory, const BondLaw& bond, const PairMotion& m) {
 
 /// Adds a dashpot's force along and across, and books what it takes.
 void damp(PairResponse& r, const PairMotion& m, double ratio, double normal_stiffness,
-          double shear_stiffness, bool pull_allowed, bool slides) {
+          double shear_stiffness, bool slides) {
   const double along = 2.0 * ratio * std::sqrt(normal_stiffness * m.effective_mass);
   const double elastic = r.normal;
   r.normal -= along * m.normal_velocity;
-  if (!pull_allowed) r.normal = std::max(0.0, r.normal);
   r.energy.damping += -(r.normal - elastic) * m.normal_velocity * m.step;
   if (slides) return;
   const double across = 2.0 * ratio * std::sqrt(shear_stiffness * m.effective_mass);
@@ -129,7 +128,7 @@ PairResponse respond(PairMemory& memory, const ContactLaw& contact, const BondLa
       r.tangential = now.shear_force;
       r.moment = now.moment;
       r.energy.elastic = stored;
-      damp(r, m, contact.damping_ratio, bond.normal_stiffness, bond.shear_stiffness, true, false);
+      damp(r, m, contact.damping_ratio, bond.normal_stiffness, bond.shear_stiffness, false);
     }
   }
   if (!now.bonded && r.broken != Break::Tension) {
@@ -151,7 +150,7 @@ PairResponse respond(PairMemory& memory, const ContactLaw& contact, const BondLa
       r.energy.elastic = contact_energy(contact, m.overlap) +
                          spring_energy(std::min(shear, most), contact.shear_stiffness);
       damp(r, m, contact.damping_ratio, contact_stiffness(contact, m.overlap),
-           contact.shear_stiffness, false, slides);
+           contact.shear_stiffness, slides);
     }
   }
   if (advance) memory = now;
