@@ -8,10 +8,8 @@
 #include <pair.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <vector>
 
 #include "liggghts_coupling/bond/bond_book.h"
 
@@ -46,10 +44,8 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
       k += 3;
     } else if (word == "list") {
       need(1);
-      request.listed.emplace();
-      book.request = request;
-      read_list(arg[k + 1]);
-      request.listed = book.request->listed;
+      request.listed = read_list(arg[k + 1]);
+      wanted_ = static_cast<long>(request.listed->size());
       k += 2;
     } else if (word == "spread") {
       need(1);
@@ -72,14 +68,14 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
   book.request = request;
 }
 
-void FixBondCreate::read_list(const char* path) {
+std::set<std::pair<long, long>> FixBondCreate::read_list(const char* path) {
   std::ifstream file(path);
   if (!file) error->fix_error(FLERR, this, (std::string(path) + " cannot be read").c_str());
-  auto& listed = *BondBook::instance().request->listed;
+  std::set<std::pair<long, long>> listed;
   for (long a = 0, b = 0; file >> a >> b;) listed.emplace(std::min(a, b), std::max(a, b));
   if (!file.eof())
     error->fix_error(FLERR, this, (std::string(path) + ": two ids a line are wanted").c_str());
-  wanted_ = static_cast<long>(listed.size());
+  return listed;
 }
 
 void FixBondCreate::init() {

@@ -7,6 +7,9 @@
 #include <fix.h>
 // clang-format on
 
+#include <set>
+#include <utility>
+
 namespace dem {
 
 /// fix ID all bond/create gap G [types A B] [list FILE] [spread S seed N]
@@ -26,8 +29,7 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
   void restart(char* buffer) override;
 
  private:
-  void read_list(const char* path);
-  void check_list();
+  std::set<std::pair<long, long>> read_list(const char* path);
   bool done_ = false;  ///< bonds were made, in this run or before the restart
   long wanted_ = -1;   ///< pairs of the list
 };

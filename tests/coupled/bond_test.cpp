@@ -1,99 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// pair_style gran model bond/contact in the real LIGGGHTS: breaks to the step, ranks, restart,
-/// periodic sides, strength of a lattice, and what it refuses.
-#include <gtest/gtest.h>
+/// pair_style gran model bond/contact and bond/parallel in the real LIGGGHTS: breaks to the step,
+/// ranks, restart, periodic sides, strength of a lattice, energy, bending.
+#include "tests/support/bond_script.h"
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
-#include <vector>
-
-#include "tests/support/coupled_job.h"
 
 namespace {
 
-using test::JobResult;
-
-struct Law {
-  double stiffness = 1e5, shear_stiffness = 5e4, tensile = 20.0, shear = 1e9, damping = 0.0;
-};
-
-std::string property(const std::string& name, double value) {
-  std::ostringstream text;
-  text << "fix " << name << " all property/global " << name << " peratomtypepair 1 " << value
-       << '\n';
-  return text.str();
-}
-
-/// The lines before any particle. @param box  x_lo x_hi y_lo y_hi
-std::string head(const std::string& boundary = "f f p", const std::string& box = "0 1 0 1") {
-  return "dimension 2\nunits si\natom_style granular\natom_modify map array\nboundary " + boundary +
-         "\nnewton off\ncommunicate single vel yes\nregion box block " + box +
-         " -0.5 0.5 units box\ncreate_box 1 box\nneighbor 0.02 bin\nneigh_modify delay 0\n";
-}
-
-std::string model(const Law& law) {
-  return property("contactNormalStiffness", 1e5) + property("contactShearStiffness", 5e4) +
-         property("coefficientFriction", 0.5) + property("contactDampingRatio", law.damping) +
-         property("bondNormalStiffness", law.stiffness) +
-         property("bondShearStiffness", law.shear_stiffness) +
-         property("bondTensileStrength", law.tensile) + property("bondShearStrength", law.shear) +
-         "pair_style gran model bond/contact ledger on\npair_coeff * *\n";
-}
-const std::string kBonds =
-    "fix make all bond/create gap 1e-6\nfix breaks all bond/breaks every 100 file breaks.csv\n";
-
-std::string disc(double x, double y) {
-  std::ostringstream text;
-  text.precision(17);
-  text << "create_atoms 1 single " << x << ' ' << y << " 0.0 units box\n";
-  return text.str();
-}
-
-class Script {
- public:
-  JobResult run(const std::string& text, int ranks = 1, const std::string& name = "in.script") {
-    folder_.write(name, text);
-    return test::run(
-        "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
-        "OMPI_MCA_mpi_yield_when_idle=1 mpirun --bind-to none --oversubscribe -np " +
-            std::to_string(ranks) + " " + test::kLiggghts + " -in " + name,
-        folder_.path(), 100.0);
-  }
-  std::string file(const std::string& name) const {
-    return test::read_file(folder_.path() + "/" + name);
-  }
-
- private:
-  test::TemporaryFolder folder_;
-};
-
-/// Rows of a CSV file without its head, as text fields.
-std::vector<std::vector<std::string>> rows(const std::string& csv) {
-  std::vector<std::vector<std::string>> result;
-  std::istringstream lines(csv);
-  std::string line, field;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    std::istringstream fields(line);
-    result.emplace_back();
-    while (std::getline(fields, field, ',')) result.back().push_back(field);
-  }
-  return result;
-}
-
-void expect_ok(const JobResult& job) {
-  ASSERT_EQ(job.exit_code, 0) << job.output;
-}
-
-/// Two discs at 0.1 m; the second is moved with a constant velocity.
-std::string pulled_pair(const Law& law, const std::string& velocity) {
-  return head() + disc(0.45, 0.5) + disc(0.55, 0.5) + "set type 1 diameter 0.1 density 1000\n" +
-         model(law) + kBonds +
-         "timestep 1e-5\ngroup a id 1\ngroup b id 2\nfix m1 a move linear 0 0 0\n"
-         "fix m2 b move linear " +
-         velocity + "\nrun 2500\n";
-}
+using namespace test;
 
 TEST(Bond, BreaksByTensionAtItsStep) {
   Script script;
@@ -118,7 +33,7 @@ TEST(Bond, BreaksByShearAtItsStep) {
 }
 
 /// 25 × 20 discs, a little off a square lattice so that no two bonds are alike, that fly apart.
-std::string cluster(const std::string& then) {
+std::string cluster(const std::string& bond, const std::string& then) {
   std::string discs;
   for (int j = 0; j < 20; ++j)
     for (int i = 0; i < 25; ++i)
@@ -128,7 +43,7 @@ std::string cluster(const std::string& then) {
          "set group all diameter 0.03 density 1000\n"
          "velocity all ramp vx -1 1.5 x 0 1 units box\nvelocity all ramp vy -1 2 x 0 1 units "
          "box\n" +
-         model({1e5, 5e4, 60.0, 30.0, 0.05}) + test::replaced(kBonds, "gap 1e-6", "gap 3e-4") +
+         model({1e5, 5e4, 60.0, 30.0, 0.05}, bond) + replaced(kBonds, "gap 1e-6", "gap 3e-4") +
          "fix move all nve/sphere\nfix flat all enforce2d\ntimestep 1e-5\n"
          "thermo_style custom step atoms ke f_breaks[1] f_breaks[2] f_breaks[3] f_breaks[4]\n"
          "thermo 500\nthermo_modify format float %.14g\n" +
@@ -149,12 +64,20 @@ std::vector<double> values(const std::string& dump) {
   return all;
 }
 
-TEST(Bond, AClusterBreaksAlikeOnAnyNumberOfRanks) {
+/// What both bonds promise alike.
+class EachBond : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, EachBond, testing::Values("bond/contact", "bond/parallel"),
+                         [](const auto& info) {
+                           return std::string(info.param) == "bond/contact" ? "contact"
+                                                                            : "parallel";
+                         });
+
+TEST_P(EachBond, ClusterBreaksAlikeOnAnyNumberOfRanks) {
   std::vector<std::vector<std::vector<std::string>>> events;
   std::vector<std::vector<double>> states;
   for (const int ranks : {1, 2, 4}) {
     Script script;
-    expect_ok(script.run(cluster("run 11000\n" + kFinalState), ranks));
+    expect_ok(script.run(cluster(GetParam(), "run 11000\n" + kFinalState), ranks));
     events.push_back(rows(script.file("breaks.csv")));
     states.push_back(values(script.file("state.txt")));
   }
@@ -166,20 +89,21 @@ TEST(Bond, AClusterBreaksAlikeOnAnyNumberOfRanks) {
       EXPECT_EQ(events[other][k][0], events[0][k][0]);  // step
       for (const int column : {2, 3, 4}) EXPECT_EQ(events[other][k][column], events[0][k][column]);
     }
-    double largest = 0.0;
+    double difference = 0.0;
     for (std::size_t k = 0; k < states[0].size(); ++k)
-      largest = std::max(largest, std::abs(states[other][k] - states[0][k]) /
-                                      std::max(1.0, std::abs(states[0][k])));
-    EXPECT_LT(largest, 1e-10);
+      difference = std::max(difference, std::abs(states[other][k] - states[0][k]) /
+                                            std::max(1.0, std::abs(states[0][k])));
+    EXPECT_LT(difference, 1e-10);
   }
 }
 
-TEST(Bond, RestartInTheMiddleOfAFractureIsBitIdentical) {
+TEST_P(EachBond, RestartInTheMiddleOfAFractureIsBitIdentical) {
   Script script;
-  expect_ok(script.run(cluster("run 700\nwrite_restart half.rst\nrun 700\n" + kFinalState)));
+  expect_ok(
+      script.run(cluster(GetParam(), "run 700\nwrite_restart half.rst\nrun 700\n" + kFinalState)));
   const std::string state = script.file("state.txt"), breaks = script.file("breaks.csv");
   // the same lines, but the particles come from the file; bond/create must not bond them again
-  std::string again = cluster("run 700\n" + kFinalState);
+  std::string again = cluster(GetParam(), "run 700\n" + kFinalState);
   const std::size_t from = again.find("region box"), to = again.find("fix contactNormalStiffness");
   again = again.substr(0, from) +
           "read_restart half.rst\nneighbor 0.02 bin\nneigh_modify delay 0\n" + again.substr(to);
@@ -188,7 +112,7 @@ TEST(Bond, RestartInTheMiddleOfAFractureIsBitIdentical) {
   EXPECT_EQ(script.file("breaks.csv"), breaks);
 }
 
-TEST(Bond, ADimerCrossesAPeriodicSideAlikeOnTwoRanks) {
+TEST_P(EachBond, DimerCrossesAPeriodicSideAlikeOnTwoRanks) {
   std::vector<std::string> states;
   for (const int ranks : {1, 2}) {
     Script script;
@@ -196,7 +120,7 @@ TEST(Bond, ADimerCrossesAPeriodicSideAlikeOnTwoRanks) {
         script.run(head("p f p") + disc(0.45, 0.5) + disc(0.55, 0.5) +
                        "set type 1 diameter 0.1 density 1000\nvelocity all set 5.0 0.1 0 units "
                        "box\nset atom 2 vx 5.2\n" +
-                       model({1e5, 5e4, 1e3, 1e9}) + kBonds +
+                       model({1e5, 5e4, 1e3, 1e9}, GetParam()) + kBonds +
                        "fix move all nve/sphere\nfix flat all enforce2d\ntimestep 1e-5\n"
                        "run 60000\n" +
                        kFinalState,
@@ -207,7 +131,19 @@ TEST(Bond, ADimerCrossesAPeriodicSideAlikeOnTwoRanks) {
   EXPECT_EQ(states[0], states[1]);
 }
 
-TEST(Bond, ATriangularLatticeHasItsTensileStrength) {
+/// The largest magnitude in the second column of what `fix ave/time` wrote.
+double largest(const std::string& series) {
+  std::istringstream lines(series);
+  std::string line;
+  double most = 0.0;
+  while (std::getline(lines, line)) {
+    double step = 0.0, value = 0.0;
+    if (std::istringstream(line) >> step >> value) most = std::max(most, std::abs(value));
+  }
+  return most;
+}
+
+TEST(Bond, ATriangularLatticeHasItsStrengthAcrossItsRows) {
   // Pulled across its rows, periodic along them, no shear stiffness: σ_t = √3 F_bn/l.
   const double l = 0.05, width = 0.5, strength = 20.0;
   std::string text = head("p f p", "0 0.5 0 1");
@@ -223,14 +159,40 @@ TEST(Bond, ATriangularLatticeHasItsTensileStrength) {
   Script script;
   expect_ok(script.run(text + "set type 1 diameter 0.05 density 1000\n" +
                        model({1e5, 0.0, strength, 1e9, 0.5}) + kBonds + pull.str()));
-  std::istringstream force(script.file("force.txt"));
-  std::string line;
-  double most = 0.0;
-  while (std::getline(force, line)) {
-    double step = 0.0, value = 0.0;
-    if (std::istringstream(line) >> step >> value) most = std::max(most, std::abs(value));
+  EXPECT_NEAR(largest(script.file("force.txt")) / width / (std::sqrt(3.0) * strength / l), 1.0,
+              0.01);
+  EXPECT_FALSE(rows(script.file("breaks.csv")).empty());
+}
+
+TEST(Bond, ATriangularLatticeHasItsStrengthAlongItsRows) {
+  // Pulled along its rows, free sides, no shear stiffness: σ_t = (F_bn/k_n l) E, E = 2 k_n/√3. The
+  // last discs of both ends of all rows are moved with one strain rate.
+  const int in_row = 16, rows_of_discs = 8;
+  const double l = 0.05, rise = l * std::sqrt(3.0) / 2.0, strength = 20.0, rate = 0.0125;
+  std::string text = head("f f p", "0 1 0 1");
+  std::ostringstream pull, ends[4];
+  for (int j = 0; j < rows_of_discs; ++j)
+    for (int i = 0; i < in_row; ++i) text += disc((i + 1.25 + 0.5 * (j % 2)) * l, 0.3 + j * rise);
+  for (int j = 0; j < rows_of_discs; ++j) {
+    ends[j % 2] << ' ' << j * in_row + 1;
+    ends[2 + j % 2] << ' ' << (j + 1) * in_row;
   }
-  EXPECT_NEAR(most / width / (std::sqrt(3.0) * strength / l), 1.0, 0.01);
+  pull.precision(17);
+  for (int e = 0; e < 4; ++e) {
+    const double place = (e < 2 ? 0 : in_row - 1) + 0.5 * (e % 2) - 0.5 * in_row;  // in l
+    pull << "group end" << e << " id" << ends[e].str() << "\nfix m" << e << " end" << e
+         << " move linear " << rate * place * l << " NULL NULL\n";
+  }
+  pull << "group ends union end2 end3\ngroup all_ends union end0 end1 end2 end3\n"
+       << "group inner subtract all all_ends\nfix move inner nve/sphere\nfix flat all enforce2d\n"
+       << "timestep 1e-5\ncompute f ends reduce sum fx\n"
+       << "fix p all ave/time 1 1 1 c_f file force.txt\nrun 40000\n";
+  Script script;
+  expect_ok(script.run(text + "set type 1 diameter 0.05 density 1000\n" +
+                       model({1e5, 0.0, strength, 1e9, 0.5}) + kBonds + pull.str()));
+  const double height = rows_of_discs * rise;
+  EXPECT_NEAR(largest(script.file("force.txt")) / height / (2.0 / std::sqrt(3.0) * strength / l),
+              1.0, 0.01);
   EXPECT_FALSE(rows(script.file("breaks.csv")).empty());
 }
 
@@ -268,10 +230,11 @@ TEST(Bond, AChainDispersesAsItShould) {
   EXPECT_NEAR(2.0 * std::numbers::pi / period / exact, 1.0, 0.001);
 }
 
-TEST(Bond, EnergyOfABreakingClusterIsAccountedFor) {
+TEST_P(EachBond, EnergyOfABreakingClusterIsAccountedFor) {
   Script script;
   expect_ok(script.run(
-      cluster("compute er all erotate/sphere\n"
+      cluster(GetParam(),
+              "compute er all erotate/sphere\n"
               "variable turn equal c_er*1.25\n"  // a disc has ½mr², LIGGGHTS' compute takes 0.4
               "variable sum equal ke+v_turn+f_breaks[5]+f_breaks[6]+f_breaks[7]+f_breaks[8]+"
               "f_breaks[9]\nfix p all ave/time 1 1 1500 v_sum file sum.txt\nrun 1500\n")));
@@ -298,10 +261,9 @@ double cantilever(const std::string& model_name, int discs, double force) {
        << " 0.0\nfix slow all viscous 8.0\nfix flat all enforce2d\nfix still clamp freeze\n"
           "timestep 5e-5\nrun 160000\n";
   Script script;
-  expect_ok(
-      script.run(text + "set type 1 diameter 0.05 density 1000\n" +
-                 test::replaced(model({1e5, 1e5, 1e3, 1e9, 0.5}), "bond/contact", model_name) +
-                 kBonds + load.str() + kFinalState));
+  expect_ok(script.run(text + "set type 1 diameter 0.05 density 1000\n" +
+                       model({1e5, 1e5, 1e3, 1e9, 0.5}, model_name) + kBonds + load.str() +
+                       kFinalState));
   const std::vector<double> state = values(script.file("state.txt"));
   return state[6 * (discs - 1) + 2] - 0.5;  // id x y …
 }
@@ -317,86 +279,6 @@ TEST(ParallelBond, ACantileverBendsLikeABeam) {
     exact += force * arm * arm / (k * r * r / 3.0) + force / k;
   }
   EXPECT_NEAR(cantilever("bond/parallel", discs, force) / exact, 1.0, 0.02);
-}
-
-TEST(BondCreate, ByTypeAndByList) {
-  const std::string three = head() + disc(0.4, 0.5) + disc(0.5, 0.5) + disc(0.6, 0.5) +
-                            "set type 1 diameter 0.1 density 1000\n" + model({});
-  const std::string end = "fix breaks all bond/breaks every 1 file breaks.csv\nrun 1\n";
-  Script script;
-  auto job = script.run(three + "fix make all bond/create gap 1e-6\n" + end);
-  EXPECT_NE(job.output.find("bonds created: 2"), std::string::npos) << job.output;
-  job = script.run(
-      three + "shell echo 2 1 > list.txt\nfix make all bond/create gap 1e-6 list list.txt\n" + end);
-  EXPECT_NE(job.output.find("bonds created: 1"), std::string::npos) << job.output;
-  job = script.run(three + "fix make all bond/create gap 1e-6 types 1 1\n" + end);
-  EXPECT_NE(job.output.find("bonds created: 2"), std::string::npos) << job.output;
-  job = script.run(
-      three + "shell echo 1 3 > list.txt\nfix make all bond/create gap 1e-6 list list.txt\n" + end);
-  EXPECT_NE(job.exit_code, 0);
-  EXPECT_NE(job.output.find("1 of the 1 listed pairs are no neighbours"), std::string::npos)
-      << job.output;
-}
-
-struct Refused {
-  const char* name;
-  const char *from, *to;
-  const char* message;
-};
-class BondRefusal : public testing::TestWithParam<Refused> {};
-
-TEST_P(BondRefusal, SaysWhyAndWhatToDo) {
-  Script script;
-  const Refused& p = GetParam();
-  const auto job = script.run(test::replaced(pulled_pair({}, "0 0 0"), p.from, p.to));
-  EXPECT_NE(job.exit_code, 0);
-  EXPECT_NE(job.output.find(p.message), std::string::npos) << job.output;
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    All, BondRefusal,
-    testing::Values(
-        Refused{"stretch", "bondTensileStrength peratomtypepair 1 20",
-                "bondTensileStrength peratomtypepair 1 2e4", "Raise bondNormalStiffness or lower"},
-        Refused{"newton", "newton off", "newton on", "newton pair off"},
-        Refused{"map", "atom_modify map array", "", "needs 'atom_modify map array'"},
-        Refused{"ghosts", "communicate single vel yes", "", "requires ghost atoms store velocity"},
-        Refused{"exponent", "ledger on", "exponent 2", "exponent is 1 (linear) or 1.5 (Hertz)"},
-        Refused{"gap", "bond/create gap 1e-6", "bond/create types 1 1", "needs 'gap G'"},
-        Refused{"word", "bond/create gap 1e-6", "bond/create gap 1e-6 glue 3", "knows no 'glue'"},
-        Refused{"file", "every 100 file breaks.csv", "every 100 file no/such/folder.csv",
-                "cannot be written"}),
-    [](const auto& info) { return info.param.name; });
-
-TEST(BondRefusal, OfABoxInWhichAPairMeetsThroughBothSides) {
-  Script script;
-  const auto job = script.run(head("p f p", "0 0.22 0 1") + disc(0.05, 0.5) + disc(0.15, 0.5) +
-                              "set type 1 diameter 0.1 density 1000\n" + model({}) + kBonds +
-                              "timestep 1e-5\nrun 1\n");
-  EXPECT_NE(job.exit_code, 0);
-  EXPECT_NE(job.output.find("two particles can meet there through both sides"), std::string::npos)
-      << job.output;
-}
-
-TEST(BondTimeStep, PrintsItsLimitsFitsAndRefuses) {
-  const std::string pair = pulled_pair({1e5, 5e4, 20.0, 1e9, 0.5}, "0 0 0");
-  const auto with = [&](const std::string& line, const std::string& step) {
-    return test::replaced(test::replaced(pair, "timestep 1e-5\n", "timestep " + step + "\n"),
-                          "run 2500\n", line + "\nrun 10\nprint \"step is $(dt)\"\n");
-  };
-  Script script;
-  auto job = script.run(with("fix limits all bond/timestep lambda 0.1", "1e-5"));
-  expect_ok(job);
-  // m = 7.854 kg, k = 1e5 N/m, ξ = ½: √(m/k) 0.618 = 5.477e-3 s
-  EXPECT_NE(job.output.find("damped springs, Eq 12        5.4772e-03 s"), std::string::npos)
-      << job.output;
-  EXPECT_NE(job.output.find("types 1 and 1, damped springs, Eq 12 binds"), std::string::npos);
-  job = script.run(with("fix limits all bond/timestep lambda 0.1", "1e-3"));
-  EXPECT_NE(job.exit_code, 0);
-  EXPECT_NE(job.output.find("take at most 5.4772e-04 s"), std::string::npos) << job.output;
-  job = script.run(with("fix limits all bond/timestep lambda 0.1 fit 0.003", "1e-3"));
-  expect_ok(job);
-  EXPECT_NE(job.output.find("step is 0.0005"), std::string::npos) << job.output;  // 0.003 / 6
 }
 
 }  // namespace

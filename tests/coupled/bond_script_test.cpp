@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// The commands about bonds in the real LIGGGHTS: what they make, print and refuse.
+#include "tests/support/bond_script.h"
+
+namespace {
+
+using namespace test;
+
+TEST(BondCreate, ByTypeAndByList) {
+  const std::string three = head() + disc(0.4, 0.5) + disc(0.5, 0.5) + disc(0.6, 0.5) +
+                            "set type 1 diameter 0.1 density 1000\n" + model({});
+  const std::string end = "fix breaks all bond/breaks every 1 file breaks.csv\nrun 1\n";
+  Script script;
+  auto job = script.run(three + "fix make all bond/create gap 1e-6\n" + end);
+  EXPECT_NE(job.output.find("bonds created: 2"), std::string::npos) << job.output;
+  job = script.run(
+      three + "shell echo 2 1 > list.txt\nfix make all bond/create gap 1e-6 list list.txt\n" + end);
+  EXPECT_NE(job.output.find("bonds created: 1"), std::string::npos) << job.output;
+  job = script.run(three + "fix make all bond/create gap 1e-6 types 1 1\n" + end);
+  EXPECT_NE(job.output.find("bonds created: 2"), std::string::npos) << job.output;
+  job = script.run(
+      three + "shell echo 1 3 > list.txt\nfix make all bond/create gap 1e-6 list list.txt\n" + end);
+  EXPECT_NE(job.exit_code, 0);
+  EXPECT_NE(job.output.find("1 of the 1 listed pairs are no neighbours"), std::string::npos)
+      << job.output;
+}
+
+struct Refused {
+  const char* name;
+  const char *from, *to;
+  const char* message;
+};
+class BondRefusal : public testing::TestWithParam<Refused> {};
+
+TEST_P(BondRefusal, SaysWhyAndWhatToDo) {
+  Script script;
+  const Refused& p = GetParam();
+  const auto job = script.run(replaced(pulled_pair({}, "0 0 0"), p.from, p.to));
+  EXPECT_NE(job.exit_code, 0);
+  EXPECT_NE(job.output.find(p.message), std::string::npos) << job.output;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BondRefusal,
+    testing::Values(
+        Refused{"stretch", "bondTensileStrength peratomtypepair 1 20",
+                "bondTensileStrength peratomtypepair 1 2e4", "Raise bondNormalStiffness or lower"},
+        Refused{"newton", "newton off", "newton on", "newton pair off"},
+        Refused{"map", "atom_modify map array", "", "needs 'atom_modify map array'"},
+        Refused{"ghosts", "communicate single vel yes", "", "requires ghost atoms store velocity"},
+        Refused{"exponent", "ledger on", "exponent 2", "exponent is 1 (linear) or 1.5 (Hertz)"},
+        Refused{"gap", "bond/create gap 1e-6", "bond/create types 1 1", "needs 'gap G'"},
+        Refused{"word", "bond/create gap 1e-6", "bond/create gap 1e-6 glue 3", "knows no 'glue'"},
+        Refused{"file", "every 100 file breaks.csv", "every 100 file no/such/folder.csv",
+                "cannot be written"}),
+    [](const auto& info) { return info.param.name; });
+
+TEST(BondRefusal, OfABoxInWhichAPairMeetsThroughBothSides) {
+  Script script;
+  const auto job = script.run(head("p f p", "0 0.22 0 1") + disc(0.05, 0.5) + disc(0.15, 0.5) +
+                              "set type 1 diameter 0.1 density 1000\n" + model({}) + kBonds +
+                              "timestep 1e-5\nrun 1\n");
+  EXPECT_NE(job.exit_code, 0);
+  EXPECT_NE(job.output.find("two particles can meet there through both sides"), std::string::npos)
+      << job.output;
+}
+
+TEST(BondTimeStep, PrintsItsLimitsFitsAndRefuses) {
+  const std::string pair = pulled_pair({1e5, 5e4, 20.0, 1e9, 0.5}, "0 0 0");
+  const auto with = [&](const std::string& line, const std::string& step) {
+    return replaced(replaced(pair, "timestep 1e-5\n", "timestep " + step + "\n"), "run 2500\n",
+                    line + "\nrun 10\nprint \"step is $(dt)\"\n");
+  };
+  Script script;
+  auto job = script.run(with("fix limits all bond/timestep lambda 0.1", "1e-5"));
+  expect_ok(job);
+  // m = 7.854 kg, k = 1e5 N/m, ξ = ½: √(m/k) 0.618 = 5.477e-3 s
+  EXPECT_NE(job.output.find("damped springs, Eq 12        5.4772e-03 s"), std::string::npos)
+      << job.output;
+  EXPECT_NE(job.output.find("types 1 and 1, damped springs, Eq 12 binds"), std::string::npos);
+  job = script.run(with("fix limits all bond/timestep lambda 0.1", "1e-3"));
+  EXPECT_NE(job.exit_code, 0);
+  EXPECT_NE(job.output.find("take at most 5.4772e-04 s"), std::string::npos) << job.output;
+  job = script.run(with("fix limits all bond/timestep lambda 0.1 fit 0.003", "1e-3"));
+  expect_ok(job);
+  EXPECT_NE(job.output.find("step is 0.0005"), std::string::npos) << job.output;  // 0.003 / 6
+}
+
+}  // namespace
