@@ -11,8 +11,14 @@ GHIA = {
     100: ({.1719: -.10150, .4531: -.21090, .5: -.20581, .7344: .00332}, {}),
     1000: ({.0547: -.18109, .1719: -.38289, .2813: -.27805, .5: -.06080, .8516: .33304, .9531: .46604},
            {.1563: .37095, .5: .02526, .9063: -.51550}),
+    5000: ({.0547: -.41165, .0703: -.43643, .1016: -.40435, .1719: -.33050, .2813: -.22855, .4531: -.07404,
+            .5: -.03039, .6172: .08183, .7344: .20087, .8516: .33556, .9531: .46036, .9766: .48223},
+           {.0625: .42447, .0781: .43648, .0938: .42951, .1563: .35368, .2266: .28066, .5: .00945,
+            .8047: -.30018, .8594: -.36214, .9063: -.41442, .9453: -.52876, .9531: -.55408, .9688: -.49774}),
 }
-TOLERANCE = 0.01  # of the lid's speed, at 129 cells: half of what stair-step codes of this size show
+# Of the lid's speed. At 129 cells half of what stair-step codes of this size show; at Re 5000 and 257 cells the
+# reference's own grid leaves about a hundredth at the extremes.
+TOLERANCE = {5000: 0.02}
 
 
 def main():
@@ -26,7 +32,7 @@ def main():
     v = velocity[middle, :, 1] if n % 2 else velocity[middle - 1:middle + 1, :, 1].mean(axis=0)
     reference = GHIA.get(reynolds, ({}, {}))
     results = [result(f"{name} at {place}", np.interp(place, at, profile), "U", value,
-                      "Ghia, Ghia and Shin 1982", TOLERANCE, scale=1.0)
+                      "Ghia, Ghia and Shin 1982", TOLERANCE.get(reynolds, 0.01), scale=1.0)
                for name, profile, table in (("u", u, reference[0]), ("v", v, reference[1]))
                for place, value in table.items()]
     speed = np.hypot(velocity[..., 0], velocity[..., 1])

@@ -60,6 +60,17 @@ bool Observers::draws_at(std::int64_t interval) const {
          static_cast<double>(interval) * plan_.interval() >= next_field_ - 1e-9 * plan_.interval();
 }
 
+std::int64_t Observers::next_look(std::int64_t interval) const {
+  if (obstacles_) return interval;  // their loads are summed in each
+  const auto due = [&](double time) {
+    return static_cast<std::int64_t>(std::ceil(time / plan_.interval() - 1e-9));
+  };
+  std::int64_t next = (interval + guard_every_ - 1) / guard_every_ * guard_every_;
+  if (points_) next = std::min(next, due(next_probe_));
+  if (fields_) next = std::min(next, due(next_field_));
+  return std::max(interval, next);
+}
+
 void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles) {
   const double time = static_cast<double>(interval) * plan_.interval();
   intervals_done_ = interval + 1;

@@ -45,6 +45,9 @@ class Observers {
   /// A picture of the fields is due at this interval.
   bool draws_at(std::int64_t interval) const;
 
+  /// The first interval, from this one on, whose end anything looks at in a fluid alone.
+  std::int64_t next_look(std::int64_t interval) const;
+
   /// After an interval's loads are known. @param particles  null for a fluid alone
   /// @throws NumericsError
   void after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles);

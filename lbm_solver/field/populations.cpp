@@ -30,8 +30,11 @@ Populations::Populations(int nx, int ny) : nx_(nx), ny_(ny) {
   memory_.reset(static_cast<double*>(std::aligned_alloc(kAlignment, size_ * sizeof(double))));
   if (!memory_) throw std::bad_alloc();
   first_ = memory_.get() + lead;
-  // First touch by the thread that will sweep the row.
+  // First touch by the thread that will sweep the row; the gaps too, for checkpoints keep them.
   std::fill_n(memory_.get(), lead, 0.0);
+  double* const end = memory_.get() + size_;
+  for (int q = 0; q < D2Q9::Q; ++q)
+    std::fill(row(q, ny) + stride_, q + 1 < D2Q9::Q ? row(q + 1, -1) : end, 0.0);
 #pragma omp parallel for schedule(static)
   for (int y = -1; y <= ny; ++y)
     for (int q = 0; q < D2Q9::Q; ++q) std::fill_n(row(q, y), stride_, 0.0);

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "lbm_solver/base/contracts.h"
+#include "lbm_solver/base/simd.h"
 #include "lbm_solver/collision/equilibrium.h"
 #include "lbm_solver/immersed/disc_fraction.h"
 
@@ -58,13 +59,31 @@ double Fluid::solid_fraction(int x, int y) const {
   return std::min(1.0, sum);
 }
 
-void Fluid::step() {
-  if (scheme_) scheme_->before_sweep(discs_, f_, stream_);
-  kernel_->sweep(f_, stream_, cover_.get());
-  stream_.advance();
-  ++steps_;
-  if (scheme_) scheme_->after_sweep(f_, stream_);
-  for (const auto& patch : patches_) patch->apply(f_, stream_, steps_);
+void Fluid::advance(std::int64_t steps) {
+  const bool passes = scheme_ || !patches_.empty();
+#pragma omp parallel
+  {
+    flush_denormals();
+    EsotericPull stream = stream_;  // every thread turns its own, so that a sweep has one barrier
+    for (std::int64_t s = 1; s <= steps; ++s) {
+      if (scheme_) {
+#pragma omp single
+        scheme_->before_sweep(discs_, f_, stream);
+      }
+      kernel_->sweep(f_, stream, cover_.get());
+      stream.advance();
+      if (!passes && s == steps) break;  // the end of the region is the barrier
+#pragma omp barrier
+      if (!passes) continue;
+#pragma omp single
+      {
+        if (scheme_) scheme_->after_sweep(f_, stream);
+        for (const auto& patch : patches_) patch->apply(f_, stream, steps_ + s);
+      }
+    }
+  }
+  if (steps % 2 != 0) stream_.advance();
+  steps_ += steps;
 }
 
 Fluid::Cell Fluid::cell(int x, int y) const {

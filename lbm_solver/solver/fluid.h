@@ -42,8 +42,10 @@ class Fluid {
   /// Places the solids for the next step. Needs a scheme, or a solid term in the kernel's choice.
   void place(std::span<const Disc> discs);
 
-  /// Advances by one time step.
-  void step();
+  /// Advances by one time step, or by some, in one parallel region, between which nothing is placed
+  /// or asked for.
+  void step() { advance(1); }
+  void advance(std::int64_t steps);
   std::int64_t steps() const { return steps_; }
 
   /// Loads on the placed discs over the last step, in their order.

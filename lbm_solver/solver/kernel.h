@@ -16,7 +16,8 @@ namespace lbm {
 class Kernel {
  public:
   virtual ~Kernel() = default;
-  /// @param cover  covered cells; null where the scene has no solids
+  /// Called by every thread of a parallel region, each for its share of the rows; returns without
+  /// waiting for the others. @param cover  covered cells; null where the scene has no solids
   virtual void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover) const = 0;
 };
 

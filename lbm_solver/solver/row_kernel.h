@@ -31,18 +31,14 @@ class RowKernel final : public Kernel {
   explicit RowKernel(const KernelChoice& c) : collide_(c.parameters), solids_(c) {}
 
   void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover) const override {
-#pragma omp parallel
-    {
-      flush_denormals();
 #pragma omp for schedule(static) nowait
-      for (int y = 0; y < f.ny(); ++y) {
-        const EsotericPull::Row row = stream.open(f, y);
-        if constexpr (kSolids)
-          sweep_row_with_solids(row, y, f.nx(), *cover);
-        else
-          sweep_row(row, 0, f.nx());
-        stream.close(f, y);
-      }
+    for (int y = 0; y < f.ny(); ++y) {
+      const EsotericPull::Row row = stream.open(f, y);
+      if constexpr (kSolids)
+        sweep_row_with_solids(row, y, f.nx(), *cover);
+      else
+        sweep_row(row, 0, f.nx());
+      stream.close(f, y);
     }
   }
 

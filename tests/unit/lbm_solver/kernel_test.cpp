@@ -154,6 +154,28 @@ TEST(KernelTable, NamesItsRowsWhereOneIsMissing) {
   }
 }
 
+TEST(Fluid, SameBitsStepByStepAndTogether) {
+  omp_set_num_threads(2);
+  for (const bool lid : {false, true}) {  // with a pass between the sweeps, or without
+    const Domain domain{21, 14, Side::Periodic, Side::Wall};
+    const KernelChoice choice{"trt", "none", false, "none", {kTau, kMagic, 0.0, 0.0, 0.0}};
+    Fluid one(domain, choice), together(domain, choice);
+    test::NaiveLattice unused(domain, choice);
+    for (Fluid* fluid : {&one, &together}) {
+      randomise(*fluid, unused);
+      if (lid)
+        fluid->add(std::make_unique<VelocityPatch>(
+            side_links(domain.nx, domain.ny, SideName::Top, 0, domain.nx, true), Vec2(0.01, 0.0),
+            false, 0, domain.nx, InTime{0.0, 30.0}));
+    }
+    for (int step = 0; step < 17; ++step) one.step();
+    together.advance(6);
+    together.advance(11);
+    EXPECT_TRUE(one.state() == together.state()) << lid;
+  }
+  omp_set_num_threads(1);
+}
+
 TEST(Kernel, SameBitsWithAnyNumberOfThreads) {
   const Domain domain{45, 33, Side::Periodic, Side::Wall};
   std::vector<std::vector<double>> states;
