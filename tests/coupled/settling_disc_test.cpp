@@ -37,6 +37,21 @@ TEST(SettlingDiscCoupled, ReachesTheLiteraturesReynoldsNumberAndRests) {
   EXPECT_NE(scene.output("summary.json").find("\"ending\": \"complete\""), std::string::npos);
 }
 
+// Subcycling changes neither the fall nor the fluid's cost; 1 %: the criterion of the hard case.
+TEST(SettlingDiscCoupled, OneToFiftySubstepsFallAlike) {
+  std::vector<double> speeds;
+  for (const int substeps : {1, 5, 20, 50}) {
+    SettlingDisc scene;
+    scene.change_scene("end_time = 0.04", "end_time = 0.4");
+    scene.change_scene("contact_stiffness = 2.0e5", "contact_stiffness = 2.0e2");  // allows one
+    scene.change_scene("[coupling]", "[coupling]\nsubsteps = " + std::to_string(substeps));
+    expect_success(scene.run("--record all.h5"));
+    speeds.push_back(recorded(scene, "all.h5").back().states[0].v[1]);
+  }
+  EXPECT_LT(speeds[0], -0.05);
+  for (const double speed : speeds) EXPECT_NEAR(speed / speeds[0], 1.0, 0.01);
+}
+
 TEST(SettlingDiscCoupled, SameTrajectoryWithOneTwoAndThreeSolidRanks) {
   SettlingDisc scene;
   // started off centre and near a border of the rank grid, so that it migrates and drifts sideways

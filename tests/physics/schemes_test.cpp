@@ -348,6 +348,47 @@ TEST(FastSettling, HasLittleForceNoiseAtReynolds300) {
   EXPECT_LT(std::sqrt(square / count) / weight, 0.05);
 }
 
+/// (μ_r - 1)/φ of one disc, free to turn, in the middle of a box of n × n cells between moving
+/// walls: the shear stress at a wall over that of the fluid alone. Re = γR²/ν = 0.02.
+double viscosity_gain(const Case& c, double tau, double diameter, double fraction) {
+  const double radius = 0.5 * diameter, nu = (tau - 0.5) / 3.0,
+               shear = 0.02 * nu / (radius * radius);
+  const double area = std::numbers::pi * radius * radius;
+  const int n = static_cast<int>(std::lround(std::sqrt(area / fraction)));
+  const Domain domain{n, n, Side::Periodic, Side::Wall};
+  const Vec2 wall(0.5 * shear * n, 0.0);
+  Fluid fluid = make(c, domain, "trt", tau);
+  for (const auto& [side, u] : {std::pair{SideName::Top, wall}, {SideName::Bottom, Vec2(-wall)}})
+    fluid.add(std::make_unique<VelocityPatch>(side_links(n, n, side, 0, n, true), u, false, 0, n,
+                                              InTime{}));
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x)
+      fluid.set_equilibrium(x, y, 1.0, {shear * (y + 0.5 - 0.5 * n), 0.0});
+  Disc disc{1, {0.5 * n + 0.23, 0.5 * n}, radius, {0.0, 0.0}, -0.5 * shear};
+  for (int s = 0; s < n * n / nu; ++s) {  // ten times the slowest decay
+    fluid.place(std::vector{disc});
+    fluid.step();
+    disc.spin += 0.025 * fluid.loads()[0].torque / area;  // until none is left
+  }
+  double u = 0.0;
+  for (int x = 0; x < n; ++x) u += fluid.cell(x, n - 4).u.x() / n;
+  return ((wall.x() - u) / 3.5 / shear - 1.0) / (area / (n * n));
+}
+
+TEST(DiluteSuspension, HasTheViscosityOfFreeDiscs) {
+  // 1 + 2φ [Brady 1984] as φ → 0; the gain is linear in φ where walls and images are far.
+  // 10 %: the target at ten cells.
+  const Case c{"", "layered_holdych"};
+  for (const double tau : {0.6, 1.0, 1.5}) {
+    const double one = viscosity_gain(c, tau, 10.0, 0.01);
+    const double two = viscosity_gain(c, tau, 10.0, 0.02);
+    const double four = viscosity_gain(c, tau, 10.0, 0.04);
+    const double slope = (-4.0 * one - two + 5.0 * four) / 14.0;  // least squares over 1, 2, 4
+    const double limit = (one + two + four) / 3.0 - slope * 7.0 / 3.0;
+    EXPECT_NEAR(limit / 2.0, 1.0, 0.1) << tau;
+  }
+}
+
 // (Over 50 steps this disc blows up: its velocity then changes by more than it has in an interval.)
 TEST(Averaging, OverSeveralFluidStepsKeepsTheTerminalVelocity) {
   const Domain domain{64, 300, Side::Wall, Side::Wall};
