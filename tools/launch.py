@@ -36,14 +36,25 @@ def sets(scene):
     return ["resolved"] + [n for n in ("literal", "fine") if (CASES / scene / f"{n}.toml").exists()]
 
 
+def options(scene):
+    """Choices of a scene's own, from its overlays KEY-VALUE.toml: dict KEY -> values."""
+    found = {}
+    for path in sorted((CASES / scene).glob("*-*.toml")):
+        key, value = path.stem.split("-", 1)
+        if key != "variant":
+            found.setdefault(key, []).append(value)
+    return found
+
+
 def list_scenes():
     for scene in scenes():
         heading = (CASES / scene / "README.md").read_text().splitlines()[0].lstrip("# ")
         print(f"{scene:20} {heading}")
-        print(f"{'':20} sets: {', '.join(sets(scene))}; variants: {', '.join(variants(scene)) or '-'}")
+        own = "".join(f"; --{key} {'|'.join(values)}|all" for key, values in options(scene).items())
+        print(f"{'':20} sets: {', '.join(sets(scene))}; variants: {', '.join(variants(scene)) or '-'}{own}")
 
 
-def arguments():
+def parser():
     p = argparse.ArgumentParser(prog="tools/run", description="Runs a scene and draws its pictures.")
     p.add_argument("scene", nargs="?", help="name of a folder in cases/")
     p.add_argument("--list", action="store_true", help="scenes with their sets and variants")
@@ -57,28 +68,50 @@ def arguments():
     p.add_argument("--restart", action="store_true", help="go on from the checkpoint in --out")
     p.add_argument("--out", metavar="DIR", help="default: out/SCENE[-SET][-VARIANT]")
     p.add_argument("--no-study", action="store_true", help="leave out the scene's comparison runs")
-    return p.parse_args()
+    p.epilog = "A scene may have choices of its own (--list), as --start 5 of disc_migration."
+    return p
 
 
-def check_names(scene, set_name, variant):
-    if scene not in scenes():
-        fail(f"no scene '{scene}'; there are: {', '.join(scenes())}")
-    if set_name not in sets(scene):
-        fail(f"{scene} has no set '{set_name}'; there are: {', '.join(sets(scene))}")
-    if variant and variant not in variants(scene):
-        fail(f"{scene} has no variant '{variant}'; there are: {', '.join(variants(scene)) or 'none'}")
+def arguments(words):
+    """Checked arguments; `own` holds the scene's own choices as pairs (KEY, VALUE)."""
+    args, rest = parser().parse_known_args(words)
+    if not args.scene:
+        return args
+    if args.scene not in scenes():
+        fail(f"no scene '{args.scene}'; there are: {', '.join(scenes())}")
+    if args.set not in sets(args.scene):
+        fail(f"{args.scene} has no set '{args.set}'; there are: {', '.join(sets(args.scene))}")
+    if args.variant and args.variant not in variants(args.scene):
+        fail(f"{args.scene} has no variant '{args.variant}'; there are: {', '.join(variants(args.scene)) or 'none'}")
+    known = options(args.scene)
+    args.own = []
+    while rest:
+        key, value = rest.pop(0), rest.pop(0) if rest else ""
+        if not key.startswith("--") or key[2:] not in known:
+            fail(f"{args.scene} knows no '{key}'; see tools/run --help"
+                 + "".join(f", and --{k} {'|'.join(v)}|all" for k, v in known.items()))
+        if value != "all" and value not in known[key[2:]]:
+            fail(f"{key} of {args.scene} is one of: {', '.join(known[key[2:]])}, all")
+        args.own.append((key[2:], value))
+    return args
 
 
-def out_folder(scene, set_name, variant):
-    parts = [scene] + ([set_name] if set_name != "resolved" else []) + ([variant] if variant else [])
+def label(args):
+    """Name of the overlays beside the set: VARIANT and KEY-VALUE, joined."""
+    return "_".join(([args.variant] if args.variant else []) + [f"{key}-{value}" for key, value in args.own])
+
+
+def out_folder(args):
+    parts = [args.scene] + ([args.set] if args.set != "resolved" else []) + ([label(args)] if label(args) else [])
     return ROOT / "out" / "-".join(parts)
 
 
-def scene_files(scene, set_name, variant):
-    folder = CASES / scene
+def scene_files(args):
+    folder = CASES / args.scene
     files = [folder / "scene.toml"]
-    files += [folder / f"{set_name}.toml"] if set_name != "resolved" else []
-    files += [folder / f"variant-{variant}.toml"] if variant else []
+    files += [folder / f"{args.set}.toml"] if args.set != "resolved" else []
+    files += [folder / f"variant-{args.variant}.toml"] if args.variant else []
+    files += [folder / f"{key}-{value}.toml" for key, value in args.own]
     return [str(f) for f in files]
 
 
@@ -95,9 +128,9 @@ def environment(processes):
 def command(args, out):
     bin_dir = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
     progress = "line" if sys.stdout.isatty() else "tenths"
-    fluid = [str(bin_dir / "lbm"), *scene_files(args.scene, args.set, args.variant)]
+    fluid = [str(bin_dir / "lbm"), *scene_files(args)]
     fluid += ["--out", str(out), "--threads", str(args.threads), "--progress", progress]
-    fluid += ["--set", args.set] + (["--variant", args.variant] if args.variant else [])
+    fluid += ["--set", args.set] + (["--variant", label(args)] if label(args) else [])
     fluid += ["--until", repr(args.until)] if args.until else []
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
     fluid += ["--restart"] if args.restart else []
@@ -142,33 +175,42 @@ def judge(out):
     return all(r["pass"] for r in results)
 
 
-def study(args, out):
-    """The scene's comparison runs: one line `SET VARIANT` each in study.txt, `-` for none."""
+def comparison_runs(args):
+    """Options of the runs beside the main one: the other values of a choice that is `all`, or the
+    lines of the scene's study.txt."""
     plan = CASES / args.scene / "study.txt"
-    if args.no_study or args.set != "resolved" or args.variant or args.until or not plan.exists():
-        return 0
-    for line in plan.read_text().splitlines():
-        if not line.strip() or line.startswith("#"):
-            continue
-        set_name, variant = (word if word != "-" else "" for word in line.split())
-        run = argparse.Namespace(**{**vars(args), "set": set_name or "resolved", "variant": variant,
+    for i, (key, value) in enumerate(args.own):
+        if value == "all":
+            first, *others = options(args.scene)[key]
+            args.own[i] = (key, first)
+            return [["--" + key, other] for other in others]
+    if args.no_study or args.set != "resolved" or label(args) or args.until or not plan.exists():
+        return []
+    return [line.split() for line in plan.read_text().splitlines() if line.strip() and not line.startswith("#")]
+
+
+def study(args, runs, out):
+    """Runs them, each in a folder of its own: --variant trt in study/variant-trt."""
+    for words in runs:
+        other = arguments([args.scene, *words])
+        run = argparse.Namespace(**{**vars(args), "set": other.set, "variant": other.variant, "own": other.own,
                                     "record": None})
-        code = run_job(run, out / "study" / line.replace(" ", "_"))
+        code = run_job(run, out / "study" / "-".join(words).removeprefix("--").replace("---", "_"))
         if code:
             return code
     return 0
 
 
 def main():
-    args = arguments()
+    args = arguments(sys.argv[1:])
     if args.list:
         list_scenes()
         return 0
     if not args.scene:
         fail("which scene? tools/run --list shows them")
-    check_names(args.scene, args.set, args.variant)
-    out = pathlib.Path(args.out).resolve() if args.out else out_folder(args.scene, args.set, args.variant)
-    code = run_job(args, out) or study(args, out)
+    out = pathlib.Path(args.out).resolve() if args.out else out_folder(args)
+    others = comparison_runs(args)
+    code = run_job(args, out) or study(args, others, out)
     if code:
         print(f"run | stopped with exit code {code}; logs in {out}", file=sys.stderr)
         return code

@@ -26,8 +26,8 @@ def judged(run, others):
     results = [result("drag", drag(run), "1", DRAG, SOURCE, 0.03),
                result("force over driving force", fx / drive, "1", 1.0, "momentum balance; still "
                       "changing by 1e-7 a turnover", 1e-4)]
-    if "fine_-" in others:
-        results.append(result("drag at 20 cells", drag(others["fine_-"]), "1", DRAG, SOURCE, 0.015))
+    if "set-fine" in others:
+        results.append(result("drag at 20 cells", drag(others["set-fine"]), "1", DRAG, SOURCE, 0.015))
     return results
 
 
@@ -40,8 +40,8 @@ def main():
     left.add_patch(plt.Circle((0.5115, 0.5205), 0.2523131, color="white"))
     left.set_xlabel("x [mm]")
     figure.colorbar(image, ax=left, label="speed [m/s]")
-    rows = {"default": run, "default, 20 cells": others.get("fine_-")}
-    rows.update({name[2:].replace("_", " "): r for name, r in others.items() if name != "fine_-"})
+    rows = {"default": run, "default, 20 cells": others.get("set-fine")}
+    rows.update({name.removeprefix("variant-").replace("_", " "): r for name, r in others.items() if name != "set-fine"})
     rows = {name: 100 * (drag(r) / DRAG - 1) for name, r in rows.items() if r}
     right.barh(list(rows), list(rows.values()), color="tab:blue")
     for i, error in enumerate(rows.values()):

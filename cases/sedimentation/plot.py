@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_snapshots, result, studies
+from pictures import Run, draw_snapshots, quantity, result, studies
 
 FALLING = (8e-3, 15e-3)  # m: heights between which the terminal velocity is taken
 # Another code at D/Δx = 25, as a value to stay near to: the paper gives figures only.
@@ -53,27 +53,30 @@ def judged(run, others):
 
 
 def label(name, run):
-    words = name[2:].replace("_", " ") if name.startswith("-_") else ""
+    words = name.removeprefix("variant-").replace("_", " ") if name.startswith("variant-") else ""
     return words or f"D/Δx = {run.parameters['cells_per_diameter']:.4g}"
 
 
 def main():
     run = Run(sys.argv[1])
     others = studies(run)
-    run.write_results(judged(run, others))
+    mean, sigma = terminal(run)
+    run.write_results(judged(run, others), [quantity("terminal velocity", mean, "m/s"),
+                                            quantity("its spread", sigma, "m/s"),
+                                            quantity("force noise over weight", noise(run), "1")])
     for name, r in {"resolved": run, **others}.items():
         mean, sigma = terminal(r)
         print(f"run | note | {name}: terminal velocity {mean:.4f} ± {sigma:.4f} m/s, force noise "
               f"{100 * noise(r):.1f} % of the weight, {r.summary['cpu_seconds']:.3g} CPU s")
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(6.6, 5.6), sharex=True)
     compared = {"IMB (default)": run}
-    if "-_implicit_immersed_boundary" in others:
-        compared["implicit IBM"] = others["-_implicit_immersed_boundary"]
+    if "variant-implicit_immersed_boundary" in others:
+        compared["implicit IBM"] = others["variant-implicit_immersed_boundary"]
     for name, r in compared.items():
         probe = r.probes()
         top.plot(probe["time"], -probe["vy"], label=name)
         bottom.plot(probe["time"], probe["fy"] / weight(r), label=name, linewidth=0.7)
-    for name in ("-_coarse", "fine_-"):
+    for name in ("variant-coarse", "set-fine"):
         if name in others:
             probe = others[name].probes()
             top.plot(probe["time"], -probe["vy"], "--", linewidth=0.8, label=label(name, others[name]))

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, animate, draw_bonds, draw_speed, read_table, result, studies
+from pictures import Run, animate, draw_bonds, draw_speed, quantity, read_table, result, studies, write_table
 
 DISCS = 273
 PIPES = [(42, 50), (56, 50)]  # lower left corners of the pipe's walls [mm], 2 mm wide
@@ -18,9 +18,10 @@ def left_through_pipe(run):
 
 
 def breaks(run):
-    """Times of the breaks."""
+    """Times of the breaks since the water came."""
     lines = (run.folder / "breaks.csv").read_text().splitlines()[1:]
-    return np.array([float(line.split(",")[1]) for line in lines])
+    relaxed = 20000 * run.parameters["interval"] / run.summary["substeps"]
+    return np.array([float(line.split(",")[1]) for line in lines]) - relaxed
 
 
 def draw(axes, run, time, name, vmax):
@@ -46,14 +47,29 @@ def picture_field(runs):
     next(iter(runs.values())).save(figure, "field.png")
 
 
+def fastest(run):
+    """Speed of the fastest disc at each time of the probes [m/s]."""
+    table = read_table(run.folder / "probes.csv")
+    speed = np.hypot(table["vx"], table["vy"])
+    return np.array([speed[table["time"] == t].max() for t in np.unique(table["time"])])
+
+
+def quantities(run):
+    s, p = run.summary, run.parameters
+    peak = s["ma_paper"] * p["cell"] / p["time_step"]
+    return [quantity("discs gone", left_through_pipe(run)[1][-1], "1"),
+            quantity("bonds broken", len(breaks(run)), "1"),
+            quantity("fastest disc", fastest(run).max(), "m/s"),
+            quantity("peak velocity of the fluid", peak, "m/s"),
+            quantity("Re of the peak and a disc of 4 mm", peak * 0.004 / p["kinematic_viscosity"], "1"),
+            quantity("Ma = u/c_s", s["ma_max"], "1")]
+
+
 def picture_history(runs, run):
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(6.2, 4.4), sharex=True)
     for label, r in runs.items():
         top.plot(*left_through_pipe(r), label=label)
-        table = read_table(r.folder / "probes.csv")
-        times = np.unique(table["time"])
-        fastest = [np.hypot(table["vx"], table["vy"])[table["time"] == t].max() for t in times]
-        bottom.plot(times, fastest, label=label)
+        bottom.plot(left_through_pipe(r)[0], fastest(r), label=label)
     top.set_ylabel("discs gone through the pipe")
     top.legend()
     bottom.set_ylabel("fastest disc [m/s]")
@@ -65,7 +81,7 @@ def main():
     run = Run(sys.argv[1])
     granular = run.summary["variant"] == "granular"
     runs = {"granular" if granular else "bonded": run}
-    runs.update({name[2:]: r for name, r in studies(run).items()})
+    runs.update({name.removeprefix("variant-"): r for name, r in studies(run).items()})
     gone = {label: left_through_pipe(r)[1][-1] for label, r in runs.items()}
     results = []
     if "bonded" in runs:
@@ -74,7 +90,10 @@ def main():
     if "granular" in runs and runs["granular"].summary["physical_seconds"] > 0.19:
         results.append(result("discs gone one by one, granular", gone["granular"] >= 5, "yes", 1,
                               "Wang, Feng and Wang 2016: they leave one by one", 0))
-    run.write_results(results)
+    run.write_results(results, quantities(run))
+    time, lost = left_through_pipe(run)
+    write_table(run.folder / "history.csv", {"time": time, "discs_gone": lost, "fastest_disc": fastest(run),
+                                             "bonds_broken": np.searchsorted(np.sort(breaks(run)), time)})
     for label, r in runs.items():
         s = r.summary
         print(f"run | note | {label}: {gone[label]} of {DISCS} discs gone, {len(breaks(r))} bonds broken, "

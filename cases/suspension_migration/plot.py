@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, animate, draw_speed, read_table, result
+from pictures import Run, animate, draw_speed, quantity, read_table, result, write_table
 
 STEP = 8.3333e-7  # s, the paper's
 SHOWN = (0, 50_000, 100_000, 200_000, 500_000)  # its steps
@@ -38,16 +38,24 @@ def main():
         result("first disc through the right side", times[0], "s", 12_500 * STEP,
                "Wang et al. 2017: some have crossed at step 12 500", STEP * 12_500 * 1.01, scale=1.0),
         result("fluid is fastest on the axis", middle > side, "yes", 1, "Wang et al. 2017", 0)]
-    run.write_results(results)
+    run.write_results(results, [
+        quantity("crossings of the right side", len(times), "1"),
+        quantity("velocity of the fluid around the axis", middle, "m/s"),
+        quantity("velocity of the fluid in the eighths at the walls", 0.5 * (side + u[-ny // 8:].mean()), "m/s"),
+        quantity("velocity of the discs", last["particles"][:, 4].mean(), "m/s"),
+        quantity("Ma = u/c_s", run.summary["ma_max"], "1")])
     print(f"run | note | {len(times)} crossings; fluid {middle:.2f} m/s around the axis, {side:.2f} m/s at the wall; "
           f"{run.summary['wall_seconds']:.0f} s of wall time")
     figure, (left, middle_axes, right) = plt.subplots(1, 3, figsize=(10.5, 3.4), sharey=True)
+    columns = {"y": (np.arange(ny) + 0.5) / ny * HEIGHT}
     for step in SHOWN:
         time, name = frame_at(run, step)
         frame = run.frame(name)
         y = (np.arange(ny) + 0.5) / ny * HEIGHT * 1e3
         label = f"step {step}"
-        left.plot(frame["velocity"][..., 0].mean(axis=1), y, label=label)
+        columns[f"fluid_velocity_{step}"] = frame["velocity"][..., 0].mean(axis=1)
+        columns[f"solid_fraction_{step}"] = frame["solid_fraction"].mean(axis=1)
+        left.plot(columns[f"fluid_velocity_{step}"], y, label=label)
         _, _, py, _, vx, *_ = frame["particles"].T
         edges = np.linspace(0, HEIGHT, BINS // 2 + 1)
         bin_of = np.clip(np.digitize(py, edges) - 1, 0, len(edges) - 2)
@@ -62,6 +70,7 @@ def main():
     right.legend(fontsize=7)
     figure.tight_layout()
     run.save(figure, "profiles.png")
+    write_table(run.folder / "profiles.csv", columns)
     figure, axes = plt.subplots(2, 2, figsize=(9.5, 4.6), sharex=True, sharey=True)
     for ax, step in zip(axes.flat, SHOWN[1:]):
         time, name = frame_at(run, step)

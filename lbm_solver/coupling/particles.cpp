@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 
 namespace lbm {
 
@@ -20,13 +21,20 @@ Particles::Particles(const Units& units, const Scene& scene)
       hydraulic_ratio_(scene.particles->hydraulic_ratio) {}
 
 void Particles::arrive(std::span<const protocol::Particle> particles, double interval) {
-  std::unordered_map<std::int64_t, Past> now;
+  past_.clear();
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const protocol::State& s = particles_[i].state;
     const protocol::Load sent = i < loads_.size() ? loads_[i] : protocol::Load{};
-    now.emplace(s.id, Past{{s.v, s.omega}, sent.force, sent.torque, mean_change_[i]});
+    past_.push_back({s.id, {s.v, s.omega}, sent.force, sent.torque, mean_change_[i]});
   }
-  past_ = std::move(now);
+  std::unordered_map<std::int64_t, const Past*> by_id;  // only where the order has changed
+  const auto past_of = [&](std::size_t i, std::int64_t id) -> const Past* {
+    if (i < past_.size() && past_[i].id == id) return &past_[i];
+    if (by_id.empty())
+      for (const Past& p : past_) by_id.emplace(p.id, &p);
+    const auto found = by_id.find(id);
+    return found == by_id.end() ? nullptr : found->second;
+  };
   interval_ = interval;
   particles_.assign(particles.begin(), particles.end());
   change_.assign(particles.size(), Motion{});
@@ -34,10 +42,9 @@ void Particles::arrive(std::span<const protocol::Particle> particles, double int
   before_.assign(particles.size(), nullptr);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const protocol::State& s = particles[i].state;
-    const auto found = past_.find(s.id);
-    if (found == past_.end()) continue;
-    before_[i] = &found->second;
-    const Past& past = found->second;
+    before_[i] = past_of(i, s.id);
+    if (!before_[i]) continue;
+    const Past& past = *before_[i];
     for (int k = 0; k < 3; ++k) {
       change_[i].v[k] = s.v[k] - past.motion.v[k];
       change_[i].omega[k] = s.omega[k] - past.motion.omega[k];

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "lbm_solver/base/scene.h"
@@ -75,6 +74,7 @@ class Particles {
   };
   /// What is kept of a particle from one interval to the next.
   struct Past {
+    std::int64_t id;
     Motion motion;
     protocol::Vec3 force, torque;  ///< as sent
     Motion mean_change;            ///< see mean_change_
@@ -93,7 +93,7 @@ class Particles {
   std::vector<protocol::Particle> particles_;
   std::vector<Motion> change_;  // of velocities since the interval before; 0 for a new particle
   std::vector<Motion> mean_change_;  // of the last intervals, the latest with weight kAverage
-  std::unordered_map<std::int64_t, Past> past_;
+  std::vector<Past> past_;
   std::vector<const Past*> before_;  // [particle], null for a new one
   std::vector<Disc> discs_;
   std::vector<DiscLoad> sums_;

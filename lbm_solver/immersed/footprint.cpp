@@ -26,18 +26,19 @@ Images images(double at, double radius, int n, Side side) {
 }  // namespace
 
 bool Footprint::update(const Disc& disc, const Domain& domain) {
-  if (disc.centre == centre_ && disc.radius == radius_ && disc.hollow == hollow_) return false;
-  centre_ = disc.centre;
+  const Vec2 centre = (disc.centre / kSnap).array().round() * kSnap;
+  if (centre == centre_ && disc.radius == radius_ && disc.hollow == hollow_) return false;
+  centre_ = centre;
   radius_ = disc.radius;
   hollow_ = disc.hollow;
   spans_.clear();
   fractions_.clear();
   if (disc.hollow) {
-    add_outside(disc.centre, disc.radius, domain);
+    add_outside(centre, disc.radius, domain);
     return true;
   }
-  const Images x = images(disc.centre.x(), disc.radius, domain.nx, domain.x);
-  const Images y = images(disc.centre.y(), disc.radius, domain.ny, domain.y);
+  const Images x = images(centre.x(), disc.radius, domain.nx, domain.x);
+  const Images y = images(centre.y(), disc.radius, domain.ny, domain.y);
   for (int j = 0; j < y.count; ++j)
     for (int i = 0; i < x.count; ++i)
       add_image({x.first + i * domain.nx, y.first + j * domain.ny}, disc.radius, domain);

@@ -96,7 +96,7 @@ void particle_benchmark(benchmark::State& state, int count, const std::string& p
   std::vector<Disc> discs;
   for (int i = 0; i < count; ++i)
     discs.push_back(
-        {i, {8.0 + 16.0 * (i % side), 8.3 + 16.0 * (i / side)}, 5.0, {1e-3, 0.0}, 1e-4});
+        {i, {8.0 + 16.0 * (i % side), 8.3 + 16.0 * (i / side)}, 5.0, {2e-2, 0.0}, 1e-4});
   cover.update(discs);
   for (auto _ : state) {
     if (part == "map")

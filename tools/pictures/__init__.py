@@ -55,9 +55,10 @@ class Run:
         figure.savefig(self.folder / name, bbox_inches="tight")
         plt.close(figure)
 
-    def write_results(self, results):
-        """Puts results into summary.json, whole or not at all."""
+    def write_results(self, results, quantities=()):
+        """Puts judged results, and quantities to know, into summary.json, whole or not at all."""
         self.summary["results"] = results
+        self.summary["quantities"] = list(quantities)
         part = self.folder / "summary.json.part"
         part.write_text(json.dumps(self.summary, indent=2) + "\n")
         part.replace(self.folder / "summary.json")
@@ -69,6 +70,17 @@ def result(name, value, unit, reference, source, tolerance, scale=None):
     error = (value - reference) / (abs(reference) if scale is None else scale)
     return {"name": name, "value": value, "unit": unit, "reference": reference, "source": source,
             "error": error, "tolerance": tolerance, "pass": bool(abs(error) <= tolerance)}
+
+
+def quantity(name, value, unit):
+    """A number that is told, not judged: there is no reference for it."""
+    return {"name": name, "value": float(value), "unit": unit}
+
+
+def write_table(path, columns):
+    """A CSV file of columns of equal length: dict name -> array."""
+    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns),
+               comments="", fmt="%.8g")
 
 
 def draw_speed(axes, run, name, vmax, length_unit=1e-2):

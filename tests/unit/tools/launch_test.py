@@ -68,8 +68,22 @@ class Launch(unittest.TestCase):
             self.assertEqual(code, 2)
             self.assertIn(expected, text)
 
+    def test_own_choices_become_overlays(self):
+        args = launch.arguments(["disc_migration", "--start", "6", "--initial", "rest"])
+        self.assertEqual([pathlib.Path(f).name for f in launch.scene_files(args)],
+                         ["scene.toml", "start-6.toml", "initial-rest.toml"])
+        for words, expected in ((["--start", "4"], "5, 6, 7, 8, 9, all"), (["--end", "4"], "knows no '--end'")):
+            code, text = self.run_main("disc_migration", *words)
+            self.assertEqual(code, 2)
+            self.assertIn(expected, text)
+
+    def test_all_values_of_a_choice_are_the_run_and_its_comparisons(self):
+        args = launch.arguments(["disc_migration", "--start", "all"])
+        self.assertEqual(launch.comparison_runs(args), [["--start", v] for v in "6789"])
+        self.assertEqual(args.own, [("start", "5")])
+
     def test_the_command_names_both_programs_by_absolute_path(self):
-        args = mock.Mock(scene="settling_disc", set="fine", variant="d10", threads=2, until=None,
+        args = mock.Mock(scene="settling_disc", set="fine", variant="d10", own=[], threads=2, until=None,
                          record=None, restart=False, fluid_ranks=1, solid_ranks=3)
         line = launch.command(args, pathlib.Path("/somewhere"))
         split = line.index(":")
