@@ -37,7 +37,7 @@ void define(CLI::App& app, Options& o) {
   app.set_version_flag("--version", std::string("lbm ") + BPLBM_VERSION);
   app.add_option("--out", o.run.out, "folder of all output")->capture_default_str();
   app.add_option("--until", o.run.until, "stop at this time [s]")->check(CLI::PositiveNumber);
-  app.add_flag("--restart", o.run.restart, "go on from the checkpoint in --out (a fluid alone)");
+  app.add_flag("--restart", o.run.restart, "go on from the checkpoint in --out");
   app.add_option("--record", o.record, "write the exchange to this trace file");
   app.add_option("--threads", o.threads, "threads (else OMP_NUM_THREADS, else 1)")
       ->check(CLI::Range(1, 1024));
@@ -102,9 +102,6 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   std::error_code failed;
   std::filesystem::create_directories(o.run.out, failed);
   if (failed) throw InputError(o.run.out, failed.message(), "choose another --out");
-  if (scene.coupling && o.run.restart)
-    throw InputError("--restart", "is for a fluid alone",
-                     "leave it out: a checkpoint of both programs does not exist yet");
   if (!o.record.empty() && !channel)
     throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
   if (!o.record.empty())
@@ -140,6 +137,7 @@ int main(int argc, char** argv) {
   int code = protocol::kOk;
   try {
     run(options, channel, world);
+    if (protocol::signalled()) code = protocol::kFault;  // it ended in good order, but early
   } catch (const std::exception& error) {
     code = protocol::leave_after(error, "lbm", channel.get());
   }

@@ -28,6 +28,10 @@ const char* text(Buoyancy b) {
   return "unknown";
 }
 
+const char* text(Schedule s) {
+  return s == Schedule::Serial ? "serial" : s == Schedule::Overlapped ? "overlapped" : "unknown";
+}
+
 class Comparison {
  public:
   Comparison(const Hello& fluid, const Hello& solid) : f_(fluid), s_(solid) {}
@@ -51,8 +55,12 @@ class Comparison {
     if (f_.role != Role::Fluid || s_.role != Role::Solid)
       add("roles: '{}' and '{}' are not one fluid and one solid program", f_.program, s_.program);
     if (f_.units != s_.units) add("units: fluid {}, solid {}", f_.units, s_.units);
-    if (f_.schedule != s_.schedule) add("coupling schedule differs");
-    if (f_.features != s_.features)
+    if (f_.schedule != s_.schedule)
+      add("coupling schedule: fluid {}, solid {}", text(f_.schedule), text(s_.schedule));
+    if ((f_.features & ~s_.features & kCheckpoints) != 0)
+      add("checkpoints: the fluid's scene wants them (run.checkpoint_every), '{}' cannot write any",
+          s_.program);
+    if ((f_.features & ~s_.features & ~kCheckpoints) != 0)
       add("protocol features: fluid {:#x}, solid {:#x}", f_.features, s_.features);
   }
 

@@ -11,7 +11,7 @@
 
 namespace protocol {
 
-inline constexpr std::uint32_t kProtocolVersion = 2;
+inline constexpr std::uint32_t kProtocolVersion = 3;
 
 using Vec3 = std::array<double, 3>;
 
@@ -20,8 +20,12 @@ enum class Role : std::uint32_t { Fluid = 1, Solid = 2 };
 /// The side that adds the buoyant force -rho_f V g to a particle. Exactly one may.
 enum class Buoyancy : std::uint32_t { ByFluid = 0, BySolid = 1, None = 2 };
 
-/// Serial: the fluid advances an interval, then the solid, in turn.
-enum class Schedule : std::uint32_t { Serial = 0 };
+/// Serial: the fluid advances an interval, then the solid, in turn. Overlapped: both at once, the
+/// solid with the loads of the interval before (its own in the first).
+enum class Schedule : std::uint32_t { Serial = 0, Overlapped = 1 };
+
+/// What a solid can do beyond the minimum, and what the fluid's scene needs of it.
+enum Features : std::uint64_t { kCheckpoints = 1 };
 
 struct Range {
   double lo = 0.0, hi = 0.0;
@@ -50,7 +54,7 @@ struct Hello {
   std::uint32_t solid_steps = 1;  ///< solid steps a coupling interval (substeps)
   std::int64_t first_interval = 0;
   Schedule schedule = Schedule::Serial;
-  std::uint64_t features = 0;             ///< bit flags of later protocol features; 0 today
+  std::uint64_t features = 0;             ///< solid: what it can do; fluid: what it needs
   std::optional<std::int64_t> particles;  ///< absent: this side does not care
   std::optional<Range> radius;            ///< [m]
   std::optional<Range> density;           ///< mass / (volume, in 2D pi r^2 depth) [kg/m^3]
@@ -68,10 +72,10 @@ struct Answer {
 /// Flags of a step; combined with |.
 enum StepFlags : std::uint32_t {
   kContinue = 0,
-  kLast = 1,  ///< states only: the final positions; the fluid does not advance any more
-  kStop = 2,  ///< loads only: send one more state, flagged kLast, and leave
-  kCheckpoint = 4,
-  kWantBonds = 8,  ///< loads only: list the bonds with the next states
+  kLast = 1,        ///< states only: the final positions; the fluid does not advance any more
+  kStop = 2,        ///< loads only: send one more state, flagged kLast, and leave
+  kCheckpoint = 4,  ///< loads: write a checkpoint with the next states; states: it is written
+  kWantBonds = 8,   ///< loads only: list the bonds with the next states
 };
 
 struct StepHeader {

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 
 namespace protocol {
 
@@ -14,9 +15,23 @@ namespace {
 
 constexpr double kFarewellSeconds = 4.0;
 volatile std::sig_atomic_t caught = 0;
+std::timespec caught_at{};
 
 void note_signal(int signal) {
+  if (!caught) clock_gettime(CLOCK_MONOTONIC, &caught_at);
   caught = signal;
+}
+
+double seconds_since_signal() {
+  std::timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec - caught_at.tv_sec) +
+         1e-9 * static_cast<double>(now.tv_nsec - caught_at.tv_nsec);
+}
+
+double grace() {
+  const char* set = std::getenv("BPLBM_GRACE");
+  return set ? std::atof(set) : 0.6;
 }
 
 }  // namespace
@@ -25,8 +40,12 @@ void catch_signals() {
   for (const int signal : {SIGTERM, SIGINT}) std::signal(signal, note_signal);
 }
 
+bool signalled() {
+  return caught != 0;
+}
+
 void throw_if_signalled() {
-  if (!caught) return;
+  if (!caught || seconds_since_signal() < grace()) return;
   throw ProtocolError(
       fmt::format("ended by signal {}: the partner or mpirun died, or somebody stopped the job",
                   static_cast<int>(caught)));

@@ -18,10 +18,13 @@ int exit_code_of(const std::exception& error);
 /// @param channel  null before there is a partner
 int leave_after(const std::exception& error, const std::string& program, Channel* channel);
 
-/// From now on SIGTERM and SIGINT do not kill at once: the next wait of a channel, or
-/// `throw_if_signalled`, throws ProtocolError. mpirun sends SIGTERM to the survivors when a program
-/// of the job dies.
+/// From now on SIGTERM and SIGINT do not kill at once. mpirun sends SIGTERM to the survivors when a
+/// program of the job dies, and to all when it is told to end.
 void catch_signals();
+/// Whether one has come: the fluid then ends the run at the end of its interval, in good order.
+bool signalled();
+/// @throws ProtocolError  where a signal came longer ago than a grace of 0.6 s (BPLBM_GRACE), in
+/// which a living partner would have answered
 void throw_if_signalled();
 
 /// Ends the whole MPI job now, flushing the standard streams first.

@@ -202,19 +202,30 @@ void SolidSession::agree(const Hello& hello) {
   settle(*channel_, fluid_.front(), hello, {timeout_, "its answer to our hello"});
 }
 
-SolidSession::Reply SolidSession::exchange(const StepHeader& head, std::span<const State> states,
-                                           std::span<const Shape> shapes,
-                                           std::optional<BondReport> bonds) {
+void SolidSession::send(const StepHeader& head, std::span<const State> states,
+                        std::span<const Shape> shapes, const std::optional<BondReport>& bonds) {
   const Stopwatch watch(waited_);
   for (int r = 0; r < channel_->remote_size(); ++r)
     send_states(r, head, states, shapes, r == 0 ? bonds : std::nullopt);
+  head_ = head;
   loads_.assign(states.size(), Load{});
   for (std::size_t i = 0; i < states.size(); ++i) loads_[i].id = states[i].id;
+}
+
+SolidSession::Reply SolidSession::collect() {
+  const Stopwatch watch(waited_);
   Reply reply;
-  if (!(head.flags & kLast))
-    for (int r = 0; r < channel_->remote_size(); ++r) reply.flags |= add_loads(r, head);
+  for (int r = 0; r < channel_->remote_size(); ++r) reply.flags |= add_loads(r);
   reply.loads = loads_;
   return reply;
+}
+
+SolidSession::Reply SolidSession::exchange(const StepHeader& head, std::span<const State> states,
+                                           std::span<const Shape> shapes,
+                                           const std::optional<BondReport>& bonds) {
+  send(head, states, shapes, bonds);
+  if (head.flags & kLast) return {kContinue, loads_};
+  return collect();
 }
 
 void SolidSession::send_states(int rank, const StepHeader& head, std::span<const State> states,
@@ -237,7 +248,8 @@ void SolidSession::send_states(int rank, const StepHeader& head, std::span<const
   channel_->send(rank, encode(batch), {timeout_, "it to take our states"});
 }
 
-std::uint32_t SolidSession::add_loads(int rank, const StepHeader& head) {
+std::uint32_t SolidSession::add_loads(int rank) {
+  const StepHeader& head = head_;
   const auto batch = decode<LoadBatch>(
       channel_->receive(rank, {timeout_, fmt::format("the loads of interval {}", head.interval)}));
   expect_interval(batch.head, head.interval, *channel_, rank);

@@ -82,14 +82,19 @@ class SolidSession {
 
   struct Reply {
     std::uint32_t flags = kContinue;
-    std::span<const Load> loads;  ///< in the order of the states; valid until the next exchange
+    std::span<const Load> loads;  ///< in the order of the states sent; valid until the next are
   };
-  /// Sends this rank's states and returns their loads, summed over fluid ranks in rank order; a
-  /// particle that touches no fluid has none. With kLast nothing is waited for.
+  /// Sends this rank's states.
   /// @param states, shapes  one each a particle, same order
   /// @param bonds  what a solid with bonds has to say of them
+  void send(const StepHeader& head, std::span<const State> states, std::span<const Shape> shapes,
+            const std::optional<BondReport>& bonds = {});
+  /// Waits for the loads of the states sent last, summed over fluid ranks in rank order; a particle
+  /// that touches no fluid has none.
+  Reply collect();
+  /// Both, one after the other, as the serial schedule has it. With kLast nothing is waited for.
   Reply exchange(const StepHeader& head, std::span<const State> states,
-                 std::span<const Shape> shapes, std::optional<BondReport> bonds = {});
+                 std::span<const Shape> shapes, const std::optional<BondReport>& bonds = {});
 
   /// Leaves in good order instead of the next states.
   void goodbye(const std::string& reason);
@@ -99,13 +104,14 @@ class SolidSession {
  private:
   void send_states(int rank, const StepHeader& head, std::span<const State> states,
                    std::span<const Shape> shapes, const std::optional<BondReport>& bonds);
-  std::uint32_t add_loads(int rank, const StepHeader& head);
+  std::uint32_t add_loads(int rank);
 
   Channel* channel_;
   double timeout_, waited_ = 0.0;
   std::vector<Hello> fluid_;                                   // [fluid rank]
   std::vector<std::unordered_map<std::int64_t, Shape>> told_;  // [fluid rank] shapes it knows
   std::vector<std::vector<std::size_t>> sent_;                 // [fluid rank] states it got
+  StepHeader head_;                                            // of the states sent last
   std::vector<Load> loads_;
 };
 

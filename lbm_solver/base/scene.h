@@ -97,6 +97,7 @@ struct CouplingScene {
   protocol::Buoyancy buoyancy = protocol::Buoyancy::ByFluid;
   std::optional<double> virtual_mass;  ///< over displaced mass; absent: where particles are light
   double lubrication_range = 0.0;      ///< gap below which it acts [cells]; 0: off
+  bool overlapped = false;             ///< both programs at once, loads one interval old
   double timeout = 300.0;              ///< longest wait for the solid [s]
 };
 
@@ -115,7 +116,7 @@ struct Scene {
   std::optional<ParticleScene> particles;
   std::optional<CouplingScene> coupling;  ///< absent: a fluid alone
   double end_time = 0.0;                  ///< [s]
-  double checkpoint_every = 0.0;          ///< [s], without a solid; 0: never
+  double checkpoint_every = 0.0;          ///< [s]; 0: never
   double steady_below = 0.0;              ///< end earlier where the velocity changes less; 0: never
   std::vector<BoundaryScene> boundaries;
   std::vector<ObstacleScene> obstacles;

@@ -47,7 +47,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const std::string& fo
   const double keep =
       (static_cast<double>(first) - 0.5) * plan.interval();  // lines before this time
   intervals_done_ = first;
-  if (scene.coupling) probes_.emplace(folder);
+  if (scene.coupling) probes_.emplace(folder, keep);
   if (!scene.output.points.empty())
     points_.emplace(folder + "/points.csv", "time,x,y,pressure,ux,uy", keep);
   if (!obstacle_discs(scene, plan).empty()) obstacles_.emplace(scene, plan, folder, keep);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <unordered_map>
 
 namespace lbm {
@@ -140,6 +141,46 @@ std::span<const protocol::Load> Particles::mean_loads(int steps) {
     add_virtual_mass(i, loads_[i]);
   }
   return loads_;
+}
+
+namespace {
+
+constexpr std::size_t kKept = 19;  // id and six vectors
+
+void keep(std::vector<double>& memory, std::initializer_list<protocol::Vec3> vectors) {
+  for (const protocol::Vec3& v : vectors) memory.insert(memory.end(), v.begin(), v.end());
+}
+
+}  // namespace
+
+std::vector<double> Particles::memory() const {
+  std::vector<double> memory;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const protocol::State& s = particles_[i].state;
+    memory.push_back(static_cast<double>(s.id));
+    keep(memory, {s.v, s.omega, loads_[i].force, loads_[i].torque, mean_change_[i].v,
+                  mean_change_[i].omega});
+  }
+  return memory;
+}
+
+void Particles::restore(std::span<const double> memory) {
+  if (memory.size() % kKept != 0)
+    throw std::invalid_argument("'particles' of a checkpoint has another size");
+  const std::size_t n = memory.size() / kKept;
+  particles_.assign(n, {});
+  loads_.assign(n, {});
+  mean_change_.assign(n, {});
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* from = &memory[kKept * i];
+    protocol::State& s = particles_[i].state;
+    s.id = loads_[i].id = static_cast<std::int64_t>(*from++);
+    for (protocol::Vec3* v : {&s.v, &s.omega, &loads_[i].force, &loads_[i].torque,
+                              &mean_change_[i].v, &mean_change_[i].omega}) {
+      std::copy_n(from, 3, v->begin());
+      from += 3;
+    }
+  }
 }
 
 double Particles::max_speed() const {

@@ -66,6 +66,11 @@ class Particles {
   /// What mean_loads returned last, in the order of states().
   std::span<const protocol::Load> last_loads() const { return loads_; }
 
+  /// What the next interval needs of the last one, for a checkpoint; before `arrive`.
+  std::vector<double> memory() const;
+  /// @throws std::invalid_argument where it is no memory of particles
+  void restore(std::span<const double> memory);
+
   double max_speed() const;  ///< [m/s], of centre and rim
 
  private:

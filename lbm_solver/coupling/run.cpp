@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <limits>
 
 #include "lbm_solver/base/errors.h"
@@ -34,103 +35,185 @@ Summary summarise(const Scene& scene, const RunOptions& options, const Observers
   return summary;
 }
 
-}  // namespace
-
-Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& channel,
-                    const RunOptions& options, Log& log) {
-  protocol::FluidSession solid(channel, make_hello(scene, plan), scene.coupling->timeout);
-  Fluid fluid = make_fluid(scene, plan);
-  std::vector<Disc> discs = obstacle_discs(scene, plan);  // obstacles first, then the particles
-  const std::size_t obstacles = discs.size();
-  Particles particles(plan.units, scene);
-  const Lubrication lubrication{(plan.kernel.parameters.tau - 0.5) / 3.0,
-                                scene.coupling->lubrication_range,
-                                static_cast<double>(plan.fluid_steps)};
-  std::vector<double> masses;
-  const protocol::Hello& partner = solid.agree();
-  log.say(0, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s", partner.program,
-          partner.program_version, plan.substeps, plan.interval());
-
-  Observers observers(scene, plan, options.out, log);
-  const std::int64_t end = last_interval(plan, options);
-  std::string ending = "complete";
-  PartClock clock;
-  for (std::int64_t interval = 0;; ++interval) {
-    const protocol::Arrival& arrival = solid.receive();
-    clock.charge("waiting");
-    if (arrival.goodbye) {
-      ending = "stopped by solid: " + *arrival.goodbye;
-      break;
-    }
-    particles.arrive(arrival.particles, plan.interval());
-    particles.tell_bonds(arrival.bonds);
-    if (arrival.head.flags & protocol::kLast) {
-      observers.at_end(interval, fluid, &particles);
-      break;
-    }
-    for (int step = 0; step < plan.fluid_steps; ++step) {
-      discs.resize(obstacles);
-      const auto moving = particles.discs(step * plan.units.dt);
-      discs.insert(discs.end(), moving.begin(), moving.end());
-      fluid.place(discs);
-      clock.charge("placing");
-      fluid.step();
-      clock.charge("sweep");
-      std::vector<DiscLoad> loads = fluid.loads();
-      if (lubrication.range > 0.0) {
-        masses.resize(obstacles, std::numeric_limits<double>::infinity());
-        const std::vector<double> moving_masses = particles.masses();
-        masses.insert(masses.end(), moving_masses.begin(), moving_masses.end());
-        lubrication.add(discs, masses, plan.domain, loads);
-      }
-      const std::span<const DiscLoad> all(loads);
-      if (obstacles > 0) observers.add_loads(all.first(obstacles));
-      particles.add(all.subspan(obstacles));
-      clock.charge("loads");
-    }
-    std::uint32_t flags = interval + 1 >= end ? protocol::kStop : protocol::kContinue;
-    if (interval + 1 >= end || observers.draws_at(interval + 1)) flags |= protocol::kWantBonds;
-    solid.answer(particles.mean_loads(plan.fluid_steps), flags);
-    clock.charge("exchange");
-    observers.after_interval(interval, fluid, &particles);
-    clock.charge("output");
-  }
-  clock.charge("output");
-
-  Summary summary = summarise(scene, options, observers, clock, ending);
-  summary.versions[partner.program] = partner.program_version;
-  summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
-  summary.waiting = clock.parts().at("waiting");
-  write_summary(options.out, summary);
-  return summary;
-}
-
-namespace {
-
 /// Grid and steps that a checkpoint belongs to.
 std::vector<double> identity(const Plan& plan) {
   const auto& p = plan.kernel.parameters;
-  return {static_cast<double>(plan.domain.nx), static_cast<double>(plan.domain.ny), plan.units.dt,
-          p.tau};
+  return {static_cast<double>(plan.domain.nx),
+          static_cast<double>(plan.domain.ny),
+          plan.units.dt,
+          p.tau,
+          static_cast<double>(plan.fluid_steps),
+          static_cast<double>(plan.substeps)};
 }
 
-void save(const std::string& path, const Plan& plan, const Fluid& fluid,
-          const Observers& observers) {
-  State state = fluid.state();
+void save(const std::string& path, const Plan& plan, State state, const Observers& observers,
+          std::int64_t interval) {
   state["observers"] = observers.state();
   state["identity"] = identity(plan);
+  state["interval"] = {static_cast<double>(interval)};
   write_checkpoint(path, state);
 }
 
 State load(const std::string& path, const Plan& plan) {
   State state = read_checkpoint(path);
-  if (state["identity"] != identity(plan))
+  if (state["identity"] != identity(plan) || state["interval"].size() != 1)
     throw InputError(path, "was written by a run with another grid or step",
                      "restart with the same scene and overlays");
   return state;
 }
 
+std::int64_t checkpoint_intervals(const Scene& scene, const Plan& plan) {
+  if (scene.checkpoint_every <= 0.0) return 0;
+  return std::max<std::int64_t>(1, std::llround(scene.checkpoint_every / plan.interval()));
+}
+
+/// Where a coupled run begins; checks that the solid has its part of the checkpoint.
+RunStart start_of(const RunOptions& options, const Plan& plan, const State& state) {
+  RunStart start;
+  start.checkpoint = std::filesystem::absolute(options.out + "/checkpoint").lexically_normal();
+  if (!options.restart) return start;
+  start.interval = static_cast<std::int64_t>(state.at("interval")[0]);
+  if (start.interval >= last_interval(plan, options))
+    throw InputError(start.checkpoint + ".h5", "lies at the end of the run: nothing is left to do",
+                     "raise --until, or start again without --restart");
+  const std::string solid = solid_checkpoint(start.checkpoint, start.interval);
+  if (!std::filesystem::is_regular_file(solid))
+    throw InputError(solid, "is missing: the solid's part of the checkpoint",
+                     "start again without --restart");
+  return start;
+}
+
+/// The coupled time loop. An interval reads: states arrive, the fluid makes its steps, loads leave.
+class CoupledRun {
+ public:
+  CoupledRun(const Scene& scene, const Plan& plan, protocol::Channel& channel,
+             const RunOptions& options, Log& log)
+      : scene_(scene),
+        plan_(plan),
+        options_(options),
+        log_(log),
+        state_(options.restart ? load(options.out + "/checkpoint.h5", plan) : State{}),
+        start_(start_of(options, plan, state_)),
+        solid_(channel, make_hello(scene, plan, start_), scene.coupling->timeout),
+        fluid_(make_fluid(scene, plan)),
+        discs_(obstacle_discs(scene, plan)),
+        obstacles_(discs_.size()),
+        particles_(plan.units, scene),
+        lubrication_{(plan.kernel.parameters.tau - 0.5) / 3.0, scene.coupling->lubrication_range,
+                     static_cast<double>(plan.fluid_steps)},
+        partner_(solid_.agree()),
+        observers_(scene, plan, options.out, log, start_.interval),
+        end_(last_interval(plan, options)),
+        every_(checkpoint_intervals(scene, plan)) {
+    log.say(start_.interval, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s{}",
+            partner_.program, partner_.program_version, plan.substeps, plan.interval(),
+            scene.coupling->overlapped ? ", overlapped" : "");
+    if (!options.restart) return;
+    fluid_.restore(state_);
+    particles_.restore(state_.at("particles"));
+    observers_.restore(state_.at("observers"));
+    log.say(start_.interval, "restart", "goes on from {}.h5", start_.checkpoint);
+  }
+
+  Summary run() {
+    for (std::int64_t interval = start_.interval;; ++interval) {
+      const protocol::Arrival& arrival = solid_.receive();
+      clock_.charge("waiting");
+      if (arrival.goodbye) {
+        ending_ = "stopped by solid: " + *arrival.goodbye;
+        break;
+      }
+      if (arrival.head.flags & protocol::kCheckpoint) write_checkpoint(interval);
+      particles_.arrive(arrival.particles, plan_.interval());
+      particles_.tell_bonds(arrival.bonds);
+      if (arrival.head.flags & protocol::kLast) {
+        observers_.at_end(interval, fluid_, &particles_);
+        break;
+      }
+      for (int step = 0; step < plan_.fluid_steps; ++step) advance(step);
+      solid_.answer(particles_.mean_loads(plan_.fluid_steps), flags_after(interval));
+      clock_.charge("exchange");
+      observers_.after_interval(interval, fluid_, &particles_);
+      clock_.charge("output");
+    }
+    clock_.charge("output");
+    Summary summary = summarise(scene_, options_, observers_, clock_, ending_);
+    summary.versions[partner_.program] = partner_.program_version;
+    summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
+    summary.waiting = clock_.parts().at("waiting");
+    write_summary(options_.out, summary);
+    return summary;
+  }
+
+ private:
+  void advance(int step) {
+    discs_.resize(obstacles_);
+    const auto moving = particles_.discs(step * plan_.units.dt);
+    discs_.insert(discs_.end(), moving.begin(), moving.end());
+    fluid_.place(discs_);
+    clock_.charge("placing");
+    fluid_.step();
+    clock_.charge("sweep");
+    std::vector<DiscLoad> loads = fluid_.loads();
+    if (lubrication_.range > 0.0) {
+      masses_.resize(obstacles_, std::numeric_limits<double>::infinity());
+      const std::vector<double> moving_masses = particles_.masses();
+      masses_.insert(masses_.end(), moving_masses.begin(), moving_masses.end());
+      lubrication_.add(discs_, masses_, plan_.domain, loads);
+    }
+    const std::span<const DiscLoad> all(loads);
+    if (obstacles_ > 0) observers_.add_loads(all.first(obstacles_));
+    particles_.add(all.subspan(obstacles_));
+    clock_.charge("loads");
+  }
+
+  /// What the solid is told with the loads of an interval.
+  std::uint32_t flags_after(std::int64_t interval) {
+    const bool stop = interval + 1 >= end_ || protocol::signalled();
+    std::uint32_t flags = stop ? protocol::kStop : protocol::kContinue;
+    if (stop || observers_.draws_at(interval + 1)) flags |= protocol::kWantBonds;
+    if (every_ > 0 && (protocol::signalled() || (interval + 1) % every_ == 0))
+      flags |= protocol::kCheckpoint;
+    if (protocol::signalled())
+      ending_ = fmt::format("stopped by a signal{}",
+                            every_ > 0 ? "; --restart goes on from its checkpoint" : "");
+    return flags;
+  }
+
+  /// The solid's part lies on disk; with the fluid's both are complete.
+  void write_checkpoint(std::int64_t interval) {
+    State state = fluid_.state();
+    state["particles"] = particles_.memory();
+    save(start_.checkpoint + ".h5", plan_, std::move(state), observers_, interval);
+    clock_.charge("checkpoint");
+  }
+
+  const Scene& scene_;
+  const Plan& plan_;
+  const RunOptions& options_;
+  Log& log_;
+  const State state_;  // of the checkpoint that it goes on from
+  const RunStart start_;
+  protocol::FluidSession solid_;
+  Fluid fluid_;
+  std::vector<Disc> discs_;  // obstacles first, then the particles
+  const std::size_t obstacles_;
+  Particles particles_;
+  const Lubrication lubrication_;
+  std::vector<double> masses_;
+  const protocol::Hello& partner_;
+  Observers observers_;
+  const std::int64_t end_, every_;
+  std::string ending_ = "complete";
+  PartClock clock_;
+};
+
 }  // namespace
+
+Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& channel,
+                    const RunOptions& options, Log& log) {
+  return CoupledRun(scene, plan, channel, options, log).run();
+}
 
 Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& options, Log& log) {
   const std::string checkpoint = options.out + "/checkpoint.h5";
@@ -147,7 +230,7 @@ Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& option
     log.say(fluid.steps(), "restart", "goes on from {}", checkpoint);
   }
   const std::int64_t end = last_interval(plan, options);
-  const std::int64_t every = static_cast<std::int64_t>(scene.checkpoint_every / plan.interval());
+  const std::int64_t every = checkpoint_intervals(scene, plan);
   std::string ending = "complete";
   PartClock clock;
   std::int64_t step = fluid.steps();
@@ -160,9 +243,13 @@ Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& option
     if (loads) observers.add_loads(fluid.loads());
     clock.charge("loads");
     observers.after_interval(step - 1, fluid, nullptr);
-    if (every > 0 && fluid.steps() % every == 0) save(checkpoint, plan, fluid, observers);
+    if (every > 0 && (fluid.steps() % every == 0 || protocol::signalled()))
+      save(checkpoint, plan, fluid.state(), observers, step);
     clock.charge("output");
-    protocol::throw_if_signalled();
+    if (protocol::signalled()) {
+      ending = "stopped by a signal";
+      break;
+    }
     if (observers.steady()) {
       ending = fmt::format("steady: the velocity changes by less than {} a turnover",
                            scene.steady_below);

@@ -19,9 +19,9 @@ struct Domain {
 /// the surface cells (0.71) and the layer of whole cells that bounds the flow outside are above it.
 inline constexpr double kCoreDepth = 2.0;
 
-/// Places at which discs are mapped lie on a grid of this spacing, in cells: a disc that creeps keeps
-/// its fractions for many steps. That the place depends on nothing before is what keeps restarts
-/// exact. It moves a disc by 0.004 cells at most.
+/// Places at which discs are mapped lie on a grid of this spacing, in cells: a disc that creeps
+/// keeps its fractions for many steps. That the place depends on nothing before is what keeps
+/// restarts exact. It moves a disc by 0.004 cells at most.
 inline constexpr double kSnap = 1.0 / 128.0;
 
 /// The cells that one disc covers, as spans of SIMD blocks with a solid fraction a lane, its

@@ -36,8 +36,8 @@ void CsvWriter::row(std::initializer_list<double> values) {
   fmt::print(file_.get(), "\n");
 }
 
-ProbeWriter::ProbeWriter(const std::string& folder)
-    : table_(folder + "/probes.csv", "time,id,x,y,vx,vy,omega,fx,fy,torque") {}
+ProbeWriter::ProbeWriter(const std::string& folder, double keep_until)
+    : table_(folder + "/probes.csv", "time,id,x,y,vx,vy,omega,fx,fy,torque", keep_until) {}
 
 void ProbeWriter::write(double time, std::span<const protocol::Particle> particles,
                         std::span<const protocol::Load> loads) {

@@ -32,7 +32,7 @@ class CsvWriter {
 /// load it received over it. SI units.
 class ProbeWriter {
  public:
-  explicit ProbeWriter(const std::string& folder);
+  ProbeWriter(const std::string& folder, double keep_until);
   /// @param loads  same order as the particles; empty at the last state
   void write(double time, std::span<const protocol::Particle> particles,
              std::span<const protocol::Load> loads);

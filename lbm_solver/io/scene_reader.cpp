@@ -122,6 +122,7 @@ CouplingScene read_coupling(TableReader t) {
                                : protocol::Buoyancy::None;
   c.virtual_mass = t.optional_number("virtual_mass", {0.0, 100.0}, "");
   c.lubrication_range = t.number_or("lubrication_range", 0.0, {0.0, 10.0}, "cells");
+  c.overlapped = t.choice_or("schedule", "serial", {"serial", "overlapped"}) == "overlapped";
   c.timeout = t.number_or("timeout", c.timeout, Bounds::positive(), "s");
   t.finish();
   return c;
@@ -241,9 +242,6 @@ Scene read_scene(const std::vector<std::string>& files) {
   scene.end_time = run.number("end_time", Bounds::positive(), "s");
   scene.steady_below = run.number_or("steady_below", 0.0, Bounds::non_negative(), "");
   scene.checkpoint_every = run.number_or("checkpoint_every", 0.0, Bounds::non_negative(), "s");
-  if (scene.coupling && scene.checkpoint_every > 0.0)
-    run.fail("checkpoint_every", "needs a fluid alone",
-             "leave it out: a checkpoint of both programs does not exist yet");
   run.finish();
   for (const TableReader& t : root.tables("boundary"))
     scene.boundaries.push_back(read_boundary(t, scene.box));

@@ -278,7 +278,11 @@ Plan make_plan(const Scene& s) {
   return plan;
 }
 
-protocol::Hello make_hello(const Scene& s, const Plan& plan) {
+std::string solid_checkpoint(const std::string& prefix, std::int64_t interval) {
+  return fmt::format("{}.{}.solid", prefix, interval);
+}
+
+protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start) {
   const Vec2 top = s.box.origin + s.box.size;
   const double half_depth = 0.5 * s.box.depth;
   protocol::Hello h;
@@ -292,6 +296,9 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan) {
   h.depth = s.box.depth;
   h.gravity = {s.fluid.gravity.x(), s.fluid.gravity.y(), 0.0};
   h.buoyancy = s.coupling->buoyancy;
+  h.first_interval = start.interval;
+  h.schedule = s.coupling->overlapped ? protocol::Schedule::Overlapped : protocol::Schedule::Serial;
+  if (s.checkpoint_every > 0.0) h.features |= protocol::kCheckpoints;
   h.step = plan.units.dt;
   h.fluid_steps = plan.fluid_steps;
   h.solid_steps = plan.substeps;
@@ -323,7 +330,10 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan) {
   number("gravity_y", g > 0.0 ? s.fluid.gravity.y() / g : -1.0);
   number("solid_step", plan.interval() / plan.substeps);
   whole("substeps", plan.substeps);
-  whole("solid_steps_total", plan.intervals * plan.substeps);
+  whole("solid_steps_total", (plan.intervals - start.interval) * plan.substeps);
+  whole("restart", start.interval > 0 ? 1 : 0);
+  h.variables.push_back({"checkpoint", start.checkpoint});
+  h.variables.push_back({"restart_file", solid_checkpoint(start.checkpoint, start.interval)});
   number("diameter_min", p.diameter.lo);
   number("diameter_max", p.diameter.hi);
   number("density_min", p.density.lo);

@@ -45,9 +45,18 @@ inline constexpr double kStopSpeed = 0.2;
 /// @throws InputError
 Plan make_plan(const Scene& scene);
 
+/// Where a run begins, and where its checkpoints lie.
+struct RunStart {
+  std::int64_t interval = 0;                  ///< 0, or that of the checkpoint it goes on from
+  std::string checkpoint = "out/checkpoint";  ///< path without ending
+};
+
+/// The solid's checkpoint of an interval: the fluid's names the interval that both have.
+std::string solid_checkpoint(const std::string& prefix, std::int64_t interval);
+
 /// What the fluid says to the solid: everything of the plan that both must agree on, and the
 /// variables that its script may use instead of numbers of its own.
-protocol::Hello make_hello(const Scene& scene, const Plan& plan);
+protocol::Hello make_hello(const Scene& scene, const Plan& plan, const RunStart& start = {});
 
 /// A fluid as a scene wants it: boundaries and obstacles in place, initial state set.
 Fluid make_fluid(const Scene& scene, const Plan& plan);

@@ -7,12 +7,17 @@
 #include <domain.h>
 #include <error.h>
 #include <fmt/format.h>
+#include <integrate.h>
 #include <memory.h>
 #include <modify.h>
+#include <neighbor.h>
 #include <signal_handling.h>
 #include <update.h>
+#include <write_restart.h>
 
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/solid_hello.h"
@@ -106,22 +111,44 @@ void FixLbmCouple::init() {
 }
 
 void FixLbmCouple::setup(int vflag) {
-  Coupling& coupling = Coupling::instance();
+  if (settling_again_) {
+    write_checkpoint();
+    send_states();
+    if (!overlapped_ && !Coupling::instance().over) take_loads(false);
+    post_force(vflag);
+    return;
+  }
   if (set_up_)
-    fail(coupling.over
+    fail(Coupling::instance().over
              ? "the fluid has reached its end and left: no run may follow"
              : "a second run, or 'run N every M', is not possible: the fluid goes on from the "
                "first; use a single run");
   set_up_ = true;
+  begin(vflag);
+}
+
+void FixLbmCouple::begin(int vflag) {
+  Coupling& coupling = Coupling::instance();
+  const protocol::Hello& fluid = coupling.session->fluid();
   protocol::Hello hello = SolidHello(lmp, groupbit, substeps_).collect();
   if (hello.buoyancy != protocol::Buoyancy::BySolid)
-    hello.buoyancy = coupling.session->fluid().buoyancy == protocol::Buoyancy::None
-                         ? protocol::Buoyancy::None
-                         : protocol::Buoyancy::ByFluid;
+    hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
+                                                                : protocol::Buoyancy::ByFluid;
+  hello.first_interval = interval_ = fluid.first_interval;
+  hello.schedule = fluid.schedule;
+  hello.features = protocol::kCheckpoints;
+  overlapped_ = fluid.schedule == protocol::Schedule::Overlapped;
+  for (const auto& v : fluid.variables) {
+    if (v.name == "checkpoint") checkpoint_ = v.value;
+    if (v.name == "restart_file" && interval_ > 0) last_checkpoint_ = v.value;
+  }
   coupling.session->agree(hello);
   coupling.agreed = true;
   first_step_ = update->ntimestep;
-  exchange(false);
+  send_states();
+  // The first interval is serial in either schedule, unless a checkpoint has the loads to begin
+  // with.
+  if (!overlapped_ || interval_ == 0) take_loads(false);
   post_force(vflag);
 }
 
@@ -138,7 +165,13 @@ void FixLbmCouple::post_force(int) {
 void FixLbmCouple::end_of_step() {
   if (Coupling::instance().over || (update->ntimestep - first_step_) % substeps_ != 0) return;
   ++interval_;
-  exchange(true);
+  if (underway_) take_loads(true);  // overlapped: of the interval that ends, for the next one
+  if (checkpoint_asked_) {
+    settle_again();
+  } else {
+    send_states();
+    if (!overlapped_ && !Coupling::instance().over) take_loads(true);
+  }
   if (Coupling::instance().over)
     SignalHandler::request_quit = true;  // leaves the run after this step
 }
@@ -174,35 +207,116 @@ std::optional<protocol::BondReport> FixLbmCouple::bond_report() {
   return report;
 }
 
-/// @param add_change  the forces of the step just done are still in f and will act in the next
-/// first
-///                    half-step: replace the old load by the new one there too, so that the impulse
-///                    of an interval is its load times its length
-void FixLbmCouple::exchange(bool add_change) {
+void FixLbmCouple::send_states() {
   Coupling& coupling = Coupling::instance();
   gather();
   const double interval = update->dt * substeps_;
-  const protocol::StepHeader head{interval_, static_cast<double>(interval_) * interval,
-                                  stop_asked_ ? protocol::kLast : protocol::kContinue};
-  const auto reply = coupling.session->exchange(head, states_, shapes_, bond_report());
-  if (stop_asked_) {
-    coupling.over = true;
+  const std::uint32_t flags =
+      (stop_asked_ ? protocol::kLast : 0U) | (settling_again_ ? protocol::kCheckpoint : 0U);
+  coupling.session->send({interval_, static_cast<double>(interval_) * interval, flags}, states_,
+                         shapes_, bond_report());
+  coupling.over = stop_asked_;
+  underway_ = !stop_asked_;
+}
+
+/// @param add_change  the forces of the step just done are still in f and will act in the next
+///                    first half-step: replace the old load by the new one there too, so that the
+///                    impulse of an interval is its load times its length
+void FixLbmCouple::take_loads(bool add_change) {
+  const auto reply = Coupling::instance().session->collect();
+  underway_ = false;
+  stop_asked_ = reply.flags & protocol::kStop;
+  checkpoint_asked_ = reply.flags & protocol::kCheckpoint;
+  BondBook::instance().list_wanted = reply.flags & protocol::kWantBonds;
+  if (!overlapped_) {
+    for (std::size_t n = 0; n < local_.size(); ++n) hold(local_[n], reply.loads[n], add_change);
     return;
   }
-  stop_asked_ = reply.flags & protocol::kStop;
-  BondBook::instance().list_wanted = reply.flags & protocol::kWantBonds;
-  for (std::size_t n = 0; n < local_.size(); ++n) {
-    const int i = local_[n];
-    for (int k = 0; k < 3; ++k) {
-      const double force = reply.loads[n].force[k], torque = reply.loads[n].torque[k];
-      if (add_change) {
-        atom->f[i][k] += force - held_[i][k];
-        atom->torque[i][k] += torque - held_[i][3 + k];
-      }
-      held_[i][k] = force;
-      held_[i][3 + k] = torque;
-    }
+  std::vector<protocol::Load> orphans;  // of particles that have left this rank since
+  for (const protocol::Load& load : reply.loads) {
+    const int i = atom->map(static_cast<int>(load.id));
+    if (i >= 0 && i < atom->nlocal)
+      hold(i, load, add_change);
+    else
+      orphans.push_back(load);
   }
+  forward(orphans, add_change);
+}
+
+void FixLbmCouple::hold(int i, const protocol::Load& load, bool add_change) {
+  for (int k = 0; k < 3; ++k) {
+    if (add_change) {
+      atom->f[i][k] += load.force[k] - held_[i][k];
+      atom->torque[i][k] += load.torque[k] - held_[i][3 + k];
+    }
+    held_[i][k] = load.force[k];
+    held_[i][3 + k] = load.torque[k];
+  }
+}
+
+/// Brings loads to the ranks that own their particles now.
+void FixLbmCouple::forward(std::vector<protocol::Load>& orphans, bool add_change) {
+  const int mine = static_cast<int>(orphans.size() * sizeof(protocol::Load));
+  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
+  MPI_Allgather(&mine, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
+  for (int r = 1; r < comm->nprocs; ++r) starts[r] = starts[r - 1] + sizes[r - 1];
+  std::vector<protocol::Load> all((starts.back() + sizes.back()) / sizeof(protocol::Load));
+  if (all.empty()) return;
+  MPI_Allgatherv(orphans.data(), mine, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
+                 world);
+  for (const protocol::Load& load : all) {
+    const int i = atom->map(static_cast<int>(load.id));
+    if (i >= 0 && i < atom->nlocal) hold(i, load, add_change);
+  }
+}
+
+// ---- checkpoint -------------------------------------------------------------------------------
+
+/// What a run does when it begins, in the order of LIGGGHTS' Verlet::setup, in the middle of one:
+/// particles sorted and distributed, neighbours found, forces computed. Ends in setup() above.
+void FixLbmCouple::settle_again() {
+  settling_again_ = true;
+  checkpoint_asked_ = false;
+  modify->setup_pre_exchange();
+  domain->pbc();
+  domain->reset_box();
+  comm->setup();
+  if (neighbor->style) neighbor->setup_bins();
+  comm->exchange();
+  if (atom->sortfreq > 0) atom->sort();
+  comm->borders();
+  modify->setup_pre_neighbor();
+  neighbor->build();
+  neighbor->ncalls = 0;
+  update->integrate->setup_minimal(0);
+  settling_again_ = false;
+}
+
+/// Leaves this checkpoint and the one before.
+void FixLbmCouple::remove_older(const std::string& name) {
+  const std::filesystem::path prefix(checkpoint_);
+  for (const auto& entry : std::filesystem::directory_iterator(prefix.parent_path())) {
+    const std::string found = entry.path().string();
+    if (found.starts_with(checkpoint_ + ".") && found.ends_with(".solid") && found != name &&
+        found != last_checkpoint_)
+      std::filesystem::remove(entry.path());
+  }
+  last_checkpoint_ = name;
+}
+
+/// Whole or not at all; the one before stays until the fluid has this one too.
+void FixLbmCouple::write_checkpoint() {
+  const std::string name = fmt::format("{}.{}.solid", checkpoint_, interval_),
+                    part = name + ".part";
+  std::string writable = part;
+  LAMMPS_NS::WriteRestart(lmp).write(writable.data());
+  MPI_Barrier(world);
+  if (comm->me == 0) {
+    if (std::rename(part.c_str(), name.c_str()) != 0)
+      error->one(FLERR, ("fix lbm/couple: the checkpoint " + name + " cannot be written").c_str());
+    remove_older(name);
+  }
+  MPI_Barrier(world);  // it is there before any rank says so
 }
 
 // ---- held loads travel with their particles ---------------------------------------------------

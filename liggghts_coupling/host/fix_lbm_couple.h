@@ -15,7 +15,9 @@ namespace dem {
 /// Every N steps: sends position, velocity and angular velocity of the group's particles to the
 /// fluid and receives the mean hydrodynamic force and torque on each for the next N steps, which it
 /// adds at every step. The held loads migrate with the particles, are kept in restart files, and
-/// can be dumped as f_ID[1] … f_ID[6].
+/// can be dumped as f_ID[1] … f_ID[6]. Where the fluid asks for a checkpoint, LIGGGHTS is set up
+/// anew at that step, as a restart would, and writes its restart file: the run goes on to the bit
+/// as one that was started from it.
 class FixLbmCouple final : public LAMMPS_NS::Fix {
  public:
   FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
@@ -46,7 +48,14 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void begin_recording() const;
   void gather();
   static std::optional<protocol::BondReport> bond_report();
-  void exchange(bool add_change);
+  void begin(int vflag);
+  void send_states();
+  void take_loads(bool add_change);
+  void hold(int i, const protocol::Load& load, bool add_change);
+  void forward(std::vector<protocol::Load>& orphans, bool add_change);
+  void settle_again();
+  void write_checkpoint();
+  void remove_older(const std::string& name);
   [[noreturn]] void fail(const std::string& text) const;
 
   int substeps_ = 0;
@@ -55,8 +64,13 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   double** held_ = nullptr;  ///< [nmax][6] force [N] and torque [N m] of the current interval
   LAMMPS_NS::bigint first_step_ = 0;
   std::int64_t interval_ = 0;
-  bool stop_asked_ = false;
+  bool stop_asked_ = false, checkpoint_asked_ = false;
+  bool overlapped_ = false;  ///< loads are taken at the end of their interval
+  bool underway_ = false;    ///< loads of the states sent last have not been taken
   bool set_up_ = false;
+  bool settling_again_ = false;          ///< in settle_again
+  std::string checkpoint_;               ///< path without interval and ending
+  std::string last_checkpoint_;          ///< file that the fluid may still need
   std::vector<protocol::State> states_;  // buffers of one exchange
   std::vector<protocol::Shape> shapes_;
   std::vector<int> local_;

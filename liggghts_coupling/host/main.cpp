@@ -45,14 +45,16 @@ bool defines(const Arguments& arguments, const std::string& variable) {
   return false;
 }
 
-/// The folder of the script, for what it includes, and the one for its output: the fluid's default.
-void add_folders(Arguments& arguments) {
+/// What a script may count on without a fluid that says more: the folder of the script, for what it
+/// includes, the one for its output, and that it begins at the beginning.
+void add_defaults(Arguments& arguments) {
   const auto folder = std::filesystem::path(option(arguments, "-in", "-i")).parent_path();
-  if (!defines(arguments, "scene_folder"))
-    arguments.insert(arguments.end(),
-                     {"-var", "scene_folder", folder.empty() ? "." : folder.string()});
-  if (!defines(arguments, "out_folder"))
-    arguments.insert(arguments.end(), {"-var", "out_folder", "out"});
+  for (const auto& [name, value] :
+       {std::pair<const char*, std::string>{"scene_folder", folder.empty() ? "." : folder.string()},
+        {"out_folder", "out"},
+        {"restart", "0"},
+        {"restart_file", "none"}})
+    if (!defines(arguments, name)) arguments.insert(arguments.end(), {"-var", name, value});
 }
 
 /// What the fluid offers becomes a script variable, unless the command line has its own.
@@ -99,12 +101,12 @@ void run(Arguments& arguments) {
     if (option(arguments, "-in", "-i").empty())
       arguments.insert(arguments.end(), {"-in", "in.liggghts"});
     check_script(arguments);
-    add_folders(arguments);
     coupling.session = std::make_unique<protocol::SolidSession>(*coupling.channel, kHelloSeconds);
     add_offered_variables(arguments, coupling.session->fluid());
   } else {
     check_script(arguments);
   }
+  add_defaults(arguments);
   run_script(arguments, coupling.world.local);
 }
 
@@ -122,6 +124,8 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {  // LIGGGHTS itself is left as it is: it cannot be unwound
     code = protocol::leave_after(error, "liggghts", coupling.channel.get());
   }
+  if (code == protocol::kOk && coupling.session && protocol::signalled())
+    code = protocol::kFault;  // it ended in good order, but early
   coupling.session.reset();
   coupling.channel.reset();
   protocol::disconnect(coupling.world);

@@ -76,11 +76,4 @@ TEST_F(RestartTest, SaysWhatIsWrong) {
   EXPECT_NE(job.output.find("another grid or step"), std::string::npos) << job.output;
 }
 
-TEST_F(RestartTest, IsRefusedForACoupledScene) {
-  test::SettlingDisc scene;
-  const auto job = scene.run("--restart");
-  EXPECT_EQ(job.exit_code, 2);
-  EXPECT_NE(job.output.find("--restart: is for a fluid alone"), std::string::npos) << job.output;
-}
-
 }  // namespace

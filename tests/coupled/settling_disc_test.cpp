@@ -59,10 +59,9 @@ TEST(SettlingDiscCoupled, SameTrajectoryWithOneTwoAndThreeSolidRanks) {
   scene.change_scene("end_time = 0.04", "end_time = 0.2");
   for (const int ranks : {1, 2, 3}) {
     scene.change_script(
-        ranks == 1
-            ? "create_box       1 box"
-            : "processors       * " + std::to_string(ranks - 1) + " 1\ncreate_box       1 box",
-        "processors       * " + std::to_string(ranks) + " 1\ncreate_box       1 box");
+        ranks == 1 ? "newton           off"
+                   : "processors       * " + std::to_string(ranks - 1) + " 1\nnewton           off",
+        "processors       * " + std::to_string(ranks) + " 1\nnewton           off");
     expect_success(scene.run("--record " + std::to_string(ranks) + ".h5", ranks));
   }
   const auto one = recorded(scene, "1.h5");

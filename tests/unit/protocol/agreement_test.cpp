@@ -36,7 +36,8 @@ const std::vector<Mismatch>& mismatches() {
        [](Hello& h) {
          h.density = Range{1250.0, 2500.0};
        }},
-      {"features", [](Hello& h) { h.features = 4; }},
+      {"schedule: fluid serial, solid overlapped",
+       [](Hello& h) { h.schedule = Schedule::Overlapped; }},
       {"units", [](Hello& h) { h.units = "lj"; }},
   };
   return all;
@@ -52,6 +53,17 @@ TEST(Agreement, AcceptsRoundOffOfADecimalText) {
   solid.step *= 1.0 + 1e-12;
   solid.box_hi[0] *= 1.0 - 1e-12;
   EXPECT_TRUE(disagreements(test::sample_hello(Role::Fluid), solid).empty());
+}
+
+TEST(Agreement, ASolidMayBeAbleToDoMoreThanIsNeeded) {
+  Hello fluid = test::sample_hello(Role::Fluid), solid = test::sample_hello(Role::Solid);
+  solid.features = kCheckpoints;
+  EXPECT_TRUE(disagreements(fluid, solid).empty());
+  std::swap(fluid.features, solid.features);
+  ASSERT_EQ(disagreements(fluid, solid).size(), 1U);
+  EXPECT_NE(disagreements(fluid, solid)[0].find("cannot write any"), std::string::npos);
+  fluid.features = 4;
+  EXPECT_NE(disagreements(fluid, solid)[0].find("features"), std::string::npos);
 }
 
 TEST(Agreement, NamesEachMismatch) {
