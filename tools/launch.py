@@ -63,6 +63,8 @@ def parser():
     p.add_argument("--fluid-ranks", type=int, default=1, metavar="N")
     p.add_argument("--solid-ranks", type=int, default=1, metavar="M")
     p.add_argument("--threads", type=int, default=1, metavar="T", help="of the fluid")
+    p.add_argument("--engine", default="liggghts", choices=["liggghts", "lammps", "reference", "python"],
+                   help="who moves the particles; the last two suit free discs")
     p.add_argument("--until", type=float, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
     p.add_argument("--restart", action="store_true", help="go on from the checkpoint in --out")
@@ -134,13 +136,26 @@ def command(args, out):
     fluid += ["--until", repr(args.until)] if args.until else []
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
     fluid += ["--restart"] if args.restart else []
-    script = str(CASES / args.scene / "in.liggghts")
     first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
-    if not os.path.exists(script):
-        return first
-    solid = [str(bin_dir / "liggghts"), "-in", script, "-log", str(out / "liggghts.log"), "-screen", "none",
-             "-var", "out_folder", str(out)]
-    return first + [":", "-np", str(args.solid_ranks), *solid]
+    solid = solid_command(args, bin_dir, out)
+    return first + ([":", "-np", str(args.solid_ranks), *solid] if solid else [])
+
+
+def solid_command(args, bin_dir, out):
+    """The program that moves the particles; nothing for a fluid alone."""
+    if not (CASES / args.scene / "in.liggghts").exists():
+        return []
+    if args.engine == "reference":
+        return [str(bin_dir / "reference_engine")]
+    if args.engine == "python":
+        return ["/usr/bin/python3", str(ROOT / "tools" / "engines" / "python" / "engine.py")]
+    script = CASES / args.scene / f"in.{args.engine}"
+    if not script.exists():
+        fail(f"{args.scene} has no {script.name}; write one, or leave --engine out")
+    common = ["-in", str(script), "-log", str(out / f"{args.engine}.log"), "-screen", "none"]
+    if args.engine == "lammps":
+        return [str(bin_dir / "lammps_engine"), *common]
+    return [str(bin_dir / "liggghts"), *common, "-var", "out_folder", str(out)]
 
 
 def run_job(args, out):

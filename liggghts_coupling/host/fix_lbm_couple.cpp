@@ -139,7 +139,7 @@ void FixLbmCouple::begin(int vflag) {
   hello.features = protocol::kCheckpoints;
   overlapped_ = fluid.schedule == protocol::Schedule::Overlapped;
   for (const auto& v : fluid.variables) {
-    if (v.name == "checkpoint") checkpoint_ = v.value;
+    if (v.name == "checkpoint") checkpoint_ = std::filesystem::absolute(v.value);
     if (v.name == "restart_file" && interval_ > 0) last_checkpoint_ = v.value;
   }
   coupling.session->agree(hello);

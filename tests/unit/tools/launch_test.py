@@ -83,7 +83,7 @@ class Launch(unittest.TestCase):
         self.assertEqual(args.own, [("start", "5")])
 
     def test_the_command_names_both_programs_by_absolute_path(self):
-        args = mock.Mock(scene="settling_disc", set="fine", variant="d10", own=[], threads=2, until=None,
+        args = mock.Mock(scene="settling_disc", set="fine", variant="d10", own=[], engine="liggghts", threads=2, until=None,
                          record=None, restart=False, fluid_ranks=1, solid_ranks=3)
         line = launch.command(args, pathlib.Path("/somewhere"))
         split = line.index(":")

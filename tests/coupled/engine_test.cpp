@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Every engine before the same judge (conformance_fluid), and the same scenes with two of them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "tests/support/coupled_job.h"
+
+namespace {
+
+const std::string kSupport = BPLBM_SOURCE_DIR "/tests/support/";
+
+/// Command of an engine before the judge.
+std::string command(const std::string& engine) {
+  if (engine == "liggghts")
+    return test::kLiggghts + " -in " + kSupport + "conformance.liggghts -screen none";
+  if (engine == "lammps")
+    return test::kBin + "/lammps_engine -in " + kSupport + "conformance.lammps -screen none";
+  if (engine == "reference") return test::kBin + "/reference_engine";
+  return "/usr/bin/python3 " BPLBM_SOURCE_DIR "/tools/engines/python/engine.py";
+}
+
+struct Check {
+  const char *engine, *name;
+  int exit_code;
+};
+
+class EngineTest : public testing::TestWithParam<Check> {};
+
+TEST_P(EngineTest, KeepsToTheProtocol) {
+  const Check& check = GetParam();
+  const test::TemporaryFolder folder;
+  const auto job = test::run(
+      test::mpirun({test::kBin + "/conformance_fluid " + check.name}, {command(check.engine)}),
+      folder.path(), 30.0);
+  EXPECT_FALSE(job.timed_out) << job.output;
+  EXPECT_EQ(test::read_file(folder.path() + "/conformance.txt"), "ok\n") << job.output;
+  EXPECT_EQ(job.exit_code, check.exit_code) << job.output;
+}
+
+std::vector<Check> checks() {
+  std::vector<Check> all;
+  for (const char* engine : {"liggghts", "lammps", "reference", "python"}) {
+    for (const char* name : {"move", "collide", "corner", "vanish", "stop"})
+      all.push_back({engine, name, 0});
+    for (const char* name : {"version", "box"}) all.push_back({engine, name, 2});
+    all.push_back({engine, "fail", 3});
+    const std::string e = engine;
+    if (e == "reference" || e == "python") all.push_back({engine, "late", 0});
+    if (e == "liggghts")
+      all.push_back({engine, "checkpoint", 0});
+    else
+      all.push_back({engine, "checkpoint_refused", 2});
+  }
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(All, EngineTest, testing::ValuesIn(checks()), [](const auto& info) {
+  return std::string(info.param.engine) + "_" + info.param.name;
+});
+
+/// Columns y and vy of probes.csv.
+std::vector<std::array<double, 2>> track(const std::string& csv) {
+  std::vector<std::array<double, 2>> rows;
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    double t, id, x, y, vx, vy;
+    char c;
+    std::istringstream(line) >> t >> c >> id >> c >> x >> c >> y >> c >> vx >> c >> vy;
+    rows.push_back({y, vy});
+  }
+  return rows;
+}
+
+class SameScene : public testing::TestWithParam<const char*> {};
+
+// Until a contact the engines solve the same equation with the same scheme: round-off, amplified by
+// the fluid over some thousand steps.
+TEST_P(SameScene, WithAnyEngineTheDiscFallsAlike) {
+  const std::string scene = BPLBM_SOURCE_DIR "/cases/" + std::string(GetParam());
+  std::vector<std::vector<std::array<double, 2>>> tracks;
+  const test::TemporaryFolder folder;
+  folder.write("overlay.toml", "[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.2\n");
+  for (const std::string engine : {"liggghts", "lammps", "reference", "python"}) {
+    const std::string solid =
+        engine == "liggghts"
+            ? test::kLiggghts + " -log none -screen none -in " + scene + "/in.liggghts"
+        : engine == "lammps"
+            ? test::kBin + "/lammps_engine -log none -screen none -in " + scene + "/in.lammps"
+            : command(engine);
+    const auto job = test::run(
+        test::mpirun(
+            {test::kLbm + " " + scene + "/scene.toml overlay.toml --progress none --out " + engine},
+            {solid}),
+        folder.path(), 60.0);
+    ASSERT_EQ(job.exit_code, 0) << engine << job.output;
+    tracks.push_back(track(test::read_file(folder.path() + "/" + engine + "/probes.csv")));
+  }
+  double fastest = 0.0;
+  for (const auto& row : tracks[0]) fastest = std::max(fastest, std::abs(row[1]));
+  ASSERT_GT(fastest, 0.0);
+  for (std::size_t e = 1; e < tracks.size(); ++e) {
+    ASSERT_EQ(tracks[e].size(), tracks[0].size());
+    for (std::size_t k = 0; k < tracks[0].size(); ++k) {
+      EXPECT_NEAR(tracks[e][k][1], tracks[0][k][1], 1e-8 * fastest) << e << ' ' << k;
+      EXPECT_NEAR(tracks[e][k][0], tracks[0][k][0], 1e-10) << e << ' ' << k;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, SameScene, testing::Values("settling_disc", "disc_migration"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "tools/engines/lammps/fix_lbm_couple.h"
+
+#include <atom.h>
+#include <comm.h>
+#include <domain.h>
+#include <error.h>
+#include <memory.h>
+#include <timer.h>
+#include <update.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+namespace engine {
+
+using namespace LAMMPS_NS::FixConst;
+
+Coupling& Coupling::instance() {
+  static Coupling coupling;
+  return coupling;
+}
+
+FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
+    : Fix(lammps, narg, arg) {
+  const bool with_gravity = narg == 9 && std::string(arg[5]) == "gravity";
+  if (!(narg == 5 || with_gravity) || std::string(arg[3]) != "every" ||
+      (substeps_ = std::atoi(arg[4])) < 1)
+    error->all(FLERR, std::string("fix lbm/couple: usage: fix ID group lbm/couple every N [gravity "
+                                  "GX GY GZ]"));
+  if (with_gravity)
+    for (int k = 0; k < 3; ++k) gravity_[k] = std::atof(arg[6 + k]);
+  nevery = 1;
+  create_attribute = 1;
+  grow_arrays(atom->nmax);
+  atom->add_callback(LAMMPS_NS::Atom::GROW);  // held loads follow their particles
+  for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
+}
+
+FixLbmCouple::~FixLbmCouple() {
+  atom->delete_callback(id, LAMMPS_NS::Atom::GROW);
+  memory->destroy(held_);
+}
+
+int FixLbmCouple::setmask() {
+  return POST_FORCE | END_OF_STEP;
+}
+
+void FixLbmCouple::init() {
+  if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
+    error->all(FLERR, std::string("fix lbm/couple: needs spheres; use atom_style sphere"));
+}
+
+protocol::Hello FixLbmCouple::hello() const {
+  const protocol::Hello& fluid = Coupling::instance().session->fluid();
+  protocol::Hello hello;
+  hello.role = protocol::Role::Solid;
+  hello.program = "lammps_engine";
+  hello.program_version = BPLBM_VERSION;
+  hello.dimension = static_cast<std::uint32_t>(domain->dimension);
+  for (int k = 0; k < 3; ++k) {
+    hello.box_lo[k] = domain->boxlo[k];
+    hello.box_hi[k] = domain->boxhi[k];
+    hello.periodic[k] = domain->periodicity[k] != 0;
+  }
+  hello.depth = hello.box_hi[2] - hello.box_lo[2];
+  hello.step = update->dt;
+  hello.solid_steps = static_cast<std::uint32_t>(substeps_);
+  hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
+                                                              : protocol::Buoyancy::ByFluid;
+  hello.gravity = gravity_;
+  std::int64_t count = 0;
+  for (int i = 0; i < atom->nlocal; ++i) count += (atom->mask[i] & groupbit) != 0;
+  MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, world);
+  hello.particles = count;
+  return hello;
+}
+
+void FixLbmCouple::setup(int vflag) {
+  Coupling& coupling = Coupling::instance();
+  coupling.session->agree(hello());
+  coupling.agreed = true;
+  first_step_ = update->ntimestep;
+  exchange(false);
+  post_force(vflag);
+}
+
+void FixLbmCouple::post_force(int) {
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    for (int k = 0; k < 3; ++k) {
+      atom->f[i][k] += held_[i][k];
+      atom->torque[i][k] += held_[i][3 + k];
+    }
+  }
+}
+
+void FixLbmCouple::end_of_step() {
+  if (Coupling::instance().over || (update->ntimestep - first_step_) % substeps_ != 0) return;
+  ++interval_;
+  exchange(true);
+  if (Coupling::instance().over) timer->force_timeout();  // leaves the run after this step
+}
+
+/// @param add_change  the force of the step just done acts in the next first half-step as well:
+///                    replace the old load by the new one there
+void FixLbmCouple::exchange(bool add_change) {
+  std::vector<protocol::State> states;
+  std::vector<protocol::Shape> shapes;
+  std::vector<int> local;
+  const double factor = domain->dimension == 2 ? 0.5 : 0.4;  // inertia of a disc, of a sphere
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    const double *x = atom->x[i], *v = atom->v[i], *w = atom->omega[i];
+    const double r = atom->radius[i], m = atom->rmass[i];
+    states.push_back({atom->tag[i], {x[0], x[1], x[2]}, {v[0], v[1], v[2]}, {w[0], w[1], w[2]}});
+    shapes.push_back({atom->tag[i], r, m, factor * m * r * r, atom->type[i]});
+    local.push_back(i);
+  }
+  Coupling& coupling = Coupling::instance();
+  const double time = static_cast<double>(interval_) * update->dt * substeps_;
+  const std::uint32_t flags = stop_asked_ ? protocol::kLast : protocol::kContinue;
+  const auto reply = coupling.session->exchange({interval_, time, flags}, states, shapes);
+  coupling.over = stop_asked_;
+  if (coupling.over) return;
+  stop_asked_ = reply.flags & protocol::kStop;
+  for (std::size_t n = 0; n < local.size(); ++n) {
+    const int i = local[n];
+    const protocol::Load& load = reply.loads[n];
+    for (int k = 0; k < 3; ++k) {
+      if (add_change) {
+        atom->f[i][k] += load.force[k] - held_[i][k];
+        atom->torque[i][k] += load.torque[k] - held_[i][3 + k];
+      }
+      held_[i][k] = load.force[k];
+      held_[i][3 + k] = load.torque[k];
+    }
+  }
+}
+
+void FixLbmCouple::grow_arrays(int n) {
+  memory->grow(held_, n, kValues, "lbm/couple:held");
+}
+void FixLbmCouple::copy_arrays(int from, int to, int) {
+  std::copy_n(held_[from], kValues, held_[to]);
+}
+void FixLbmCouple::set_arrays(int i) {
+  std::fill_n(held_[i], kValues, 0.0);
+}
+int FixLbmCouple::pack_exchange(int i, double* buffer) {
+  std::copy_n(held_[i], kValues, buffer);
+  return kValues;
+}
+int FixLbmCouple::unpack_exchange(int i, double* buffer) {
+  std::copy_n(buffer, kValues, held_[i]);
+  return kValues;
+}
+
+}  // namespace engine

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// clang-format off
+#include "tools/engines/lammps/old_fmt.h"
+#include <fix.h>
+// clang-format on
+
+#include <vector>
+
+#include "protocol/session.h"
+
+namespace engine {
+
+/// The session that `main` made; LAMMPS offers no other way to hand it to a fix.
+struct Coupling {
+  protocol::SolidSession* session = nullptr;
+  bool agreed = false, over = false;
+  static Coupling& instance();
+};
+
+/// fix ID group lbm/couple every N [gravity GX GY GZ]: as the LIGGGHTS fix of that name, for LAMMPS
+/// spheres. Sends the group's particles every N steps and adds the loads that it gets for them at
+/// every step. LAMMPS does not tell what its fix gravity does, so the script must, for the fluid to
+/// compare.
+class FixLbmCouple final : public LAMMPS_NS::Fix {
+ public:
+  FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
+  ~FixLbmCouple() override;
+
+  int setmask() override;
+  void init() override;
+  void setup(int vflag) override;
+  void post_force(int vflag) override;
+  void end_of_step() override;
+
+  void grow_arrays(int n) override;
+  void copy_arrays(int from, int to, int is_delete) override;
+  void set_arrays(int i) override;
+  int pack_exchange(int i, double* buffer) override;
+  int unpack_exchange(int i, double* buffer) override;
+
+ private:
+  static constexpr int kValues = 6;  ///< force, torque
+  protocol::Hello hello() const;
+  void exchange(bool add_change);
+
+  int substeps_ = 0;
+  protocol::Vec3 gravity_{};  ///< [m/s²]
+  double** held_ = nullptr;   ///< [nmax][6] force [N] and torque [N m] of the current interval
+  LAMMPS_NS::bigint first_step_ = 0;
+  std::int64_t interval_ = 0;
+  bool stop_asked_ = false;
+};
+
+}  // namespace engine
