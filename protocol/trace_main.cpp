@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// `trace info FILE` says what a recording holds; `trace diff A B` where two differ first.
+/// `trace info FILE` says what a recording holds; `trace diff A B` where two differ first; `trace
+/// cut FILE OUT --intervals N` keeps the beginning; `trace plot FILE` draws a particle's way and
+/// loads.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -63,12 +66,57 @@ int diff(const std::string& path_a, const std::string& path_b) {
   return result.first() || a.size() != b.size() ? 1 : 0;
 }
 
+/// The beginning of a recording, as if its run had been told to end there.
+int cut(const std::string& path, const std::string& out, std::int64_t intervals) {
+  const Trace trace(path);
+  const std::int64_t first = trace.hello(Role::Fluid).first_interval, last = first + intervals;
+  TraceWriter writer(out, trace.recorder(), trace.local_rank(), trace.remote_size());
+  bool ends = false;
+  for (const FrameRow& row : trace.frames()) {
+    if (row.kind == Kind::States && row.interval <= last) {
+      auto batch = decode<StateBatch>(trace.frame(row));
+      if (row.interval == last) batch.head.flags |= kLast, ends = true;
+      writer.record(row.direction, row.remote, encode(batch));
+    } else if (row.kind == Kind::Loads && row.interval < last) {
+      auto batch = decode<LoadBatch>(trace.frame(row));
+      if (row.interval + 1 == last) batch.head.flags |= kStop;
+      writer.record(row.direction, row.remote, encode(batch));
+    } else if (row.kind == Kind::Hello || row.kind == Kind::Answer) {
+      writer.record(row.direction, row.remote, trace.frame(row));
+    }
+  }
+  if (!ends)
+    throw std::runtime_error(fmt::format("{} holds fewer than {} intervals", path, intervals));
+  fmt::print("{}: intervals {} … {} of {}\n", out, first, last, path);
+  return 0;
+}
+
+/// Drawing is Python's: the process becomes it.
+int plot(const std::string& path, const std::string& out, std::int64_t particle) {
+  const Trace trace(path);  // a sentence of ours where it is none
+  const std::string id = std::to_string(particle);
+  execl("/usr/bin/python3", "python3", BPLBM_SOURCE_DIR "/tools/trace_plot.py", path.c_str(),
+        out.c_str(), id.c_str(), nullptr);
+  throw std::runtime_error("/usr/bin/python3 cannot be started");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Looks into recorded exchanges"};
   app.require_subcommand(1);
-  std::string a, b;
+  std::string a, b, picture = "trace.png";
+  std::int64_t intervals = 0, particle = 1;
+  auto* cut_command = app.add_subcommand("cut", "keep the beginning of a recording");
+  cut_command->add_option("file", a)->required();
+  cut_command->add_option("out", b, "the new recording")->required();
+  cut_command->add_option("--intervals", intervals, "how many")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  auto* plot_command = app.add_subcommand("plot", "draw a particle's way, velocity and load");
+  plot_command->add_option("file", a)->required();
+  plot_command->add_option("--out", picture, "the picture")->capture_default_str();
+  plot_command->add_option("--particle", particle, "its id")->capture_default_str();
   auto* info_command = app.add_subcommand("info", "what a recording holds");
   info_command->add_option("file", a)->required();
   auto* diff_command = app.add_subcommand("diff", "the first difference of two recordings");
@@ -76,6 +124,8 @@ int main(int argc, char** argv) {
   diff_command->add_option("b", b)->required();
   CLI11_PARSE(app, argc, argv);
   try {
+    if (cut_command->parsed()) return cut(a, b, intervals);
+    if (plot_command->parsed()) return plot(a, picture, particle);
     return info_command->parsed() ? info(a) : diff(a, b);
   } catch (const std::exception& error) {
     std::fflush(stdout);

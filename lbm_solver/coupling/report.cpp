@@ -152,6 +152,18 @@ std::string describe(const Summary& s) {
       s.mass_drift);
   for (const auto& [part, share] : s.time_share)
     out += fmt::format("{} {:.0f} %  ", part, 100.0 * share);
+  if (!s.time_share.contains("waiting") || s.wall_seconds < 1.0) return out;
+  const double waits = s.time_share.at("waiting");
+  if (waits > 0.2)
+    out += fmt::format(
+        "\nhint         the fluid waits {:.0f} % of its time for the solid: --solid-ranks, or "
+        "coupling.schedule = \"overlapped\"",
+        100.0 * waits);
+  else if (waits < 0.1)
+    out += fmt::format(
+        "\nhint         the solid keeps the fluid waiting {:.0f} % of its time only: more cores "
+        "go to the fluid (--threads)",
+        100.0 * waits);
   return out;
 }
 

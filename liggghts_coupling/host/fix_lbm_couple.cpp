@@ -217,6 +217,9 @@ void FixLbmCouple::send_states() {
                          shapes_, bond_report());
   coupling.over = stop_asked_;
   underway_ = !stop_asked_;
+  if (coupling.over && comm->me == 0 && logfile)
+    fmt::print(logfile, "fix lbm/couple: {} intervals, {:.3g} s of waiting for the fluid\n",
+               interval_ - coupling.session->fluid().first_interval, coupling.session->waited());
 }
 
 /// @param add_change  the forces of the step just done are still in f and will act in the next

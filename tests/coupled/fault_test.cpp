@@ -183,6 +183,65 @@ TEST(Numerics, AFluidThatGetsTooFastStopsBothWithStepPlaceAndValue) {
               "liggghts | error | the fluid program stopped: interval"});
 }
 
+struct Damage {
+  const char *script, *reason;
+  int exit_code = 1;
+};
+class DamageTest : public testing::TestWithParam<Damage> {};
+
+TEST_P(DamageTest, IsNamedAndEndsBoth) {
+  SettlingDisc scene;
+  const auto& [script, reason, code] = GetParam();
+  expect_end(test::run(mpirun({kLbm + " --progress none"}, {kPeer + " solid " + script}),
+                       scene.folder(), 30.0),
+             code, {std::string("lbm | error | ") + reason});
+}
+INSTANTIATE_TEST_SUITE_P(
+    Frames, DamageTest,
+    testing::Values(Damage{"swapped", "the partner runs on a machine of the other byte order"},
+                    Damage{"noise", "the partner does not speak the BPLBM protocol"},
+                    Damage{"cut", "a states message promises"},
+                    Damage{"longer", "a states message promises"},
+                    Damage{"shapeless", "particle 4 came without radius and mass at interval 0"},
+                    Damage{"twice", "particle 4 came twice at interval 0"}),
+    [](const auto& info) { return std::string(info.param.script); });
+
+TEST(Damage, FewerLoadsThanParticles) {
+  const test::TemporaryFolder folder;
+  expect_end(
+      test::run(mpirun({kPeer + " fluid fewer"},
+                       {kLiggghts + " -in " BPLBM_SOURCE_DIR
+                                    "/tests/support/conformance.liggghts -screen none "
+                                    "-var boundary_x p -var boundary_y p -var x_lo 0 -var "
+                                    "x_hi 1 -var y_lo 0 -var y_hi 1 -var z_lo -0.5 -var z_hi "
+                                    "0.5 -var particles 1 -var particle1_x 0.5 -var "
+                                    "particle1_y 0.5 -var particle1_vx 0 -var particle1_vy 0 "
+                                    "-var diameter_max 0.1 -var density_max 1000 -var "
+                                    "contact_stiffness 1e5 -var solid_step 1e-3 -var substeps "
+                                    "10 -var solid_steps_total 100"}),
+                folder.path(), 30.0),
+      1, {"liggghts | error | fluid rank 0 answered 0 loads for 1 particles"});
+}
+
+TEST(Slow, APartnerThatTakesItsTimeIsWaitedFor) {
+  SettlingDisc scene;
+  const auto job =
+      test::run(mpirun({kLbm + " --progress none"}, {kPeer + " solid slow"}), scene.folder(), 30.0);
+  EXPECT_EQ(job.exit_code, 0) << job.output;
+}
+
+// No file of lbm's may grow beyond a megabyte, as on a disk that is full.
+TEST(FullDisk, EndsBothWithTheReason) {
+  SettlingDisc scene;
+  scene.change_scene("end_time = 0.04", "end_time = 1.0");
+  scene.change_scene("fields_every = 0.05", "fields_every = 0.005");
+  const std::string limited =
+      "sh -c \"trap '' XFSZ; ulimit -f 2000; exec " + kLbm + " --progress none\"";
+  const auto job =
+      test::run(mpirun({limited}, {kLiggghts + " -screen none"}), scene.folder(), 30.0);
+  expect_end(job, 1, {"is the disk full?", "liggghts | error | the fluid program stopped"});
+}
+
 /// Runs a job that would last for hours and kills one of its programs after two seconds.
 JobResult run_and_kill(const std::string& program) {
   SettlingDisc scene;

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: MIT
 /// A program that plays one side of a coupled job by a script that a test needs, and writes what it
 /// receives to peer.txt (the terminal mixes the lines of two programs):
-///   scripted_peer fluid impulse N         load of interval k is (k+1) times a constant; N
-///   intervals scripted_peer fluid nan               answers a load that is not finite
-///   scripted_peer fluid silent            says hello and nothing more
-///   scripted_peer solid insert            an empty box, late insertion, removal, return, then the
-///   end scripted_peer solid nan               a state that is not finite scripted_peer solid
-///   silent            agrees and sends nothing scripted_peer solid die               agrees, sends
-///   one state and is killed
+///
+///   fluid impulse N    load of interval k is (k+1) times a constant; N intervals
+///   fluid nan          answers a load that is not finite
+///   fluid fewer        answers fewer loads than there are particles
+///   fluid silent       says hello and nothing more
+///   solid insert       an empty box, late insertion, removal, return, then the end
+///   solid nan          a state that is not finite
+///   solid silent       agrees and sends nothing
+///   solid slow         answers late, but answers
+///   solid die          agrees, sends one state and is killed
+///   solid shapeless, twice             a particle without radius, or two of one id
+///   solid swapped, noise, cut, longer  frames of another byte order, of another program, damaged
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -67,6 +73,10 @@ void fluid(Channel& channel, const std::string& script, int intervals) {
       channel.send(0, encode(LoadBatch{arrival.head, loads}), {kTimeout, ""});
       pause();
     }
+    if (script == "fewer") {
+      channel.send(0, encode(LoadBatch{arrival.head, {}}), {kTimeout, ""});
+      pause();
+    }
     session.answer(loads, k + 1 == intervals ? kStop : kContinue);
   }
 }
@@ -76,6 +86,21 @@ State at(std::int64_t id, double x, double y) {
   s.id = id;
   s.x = {x, y, 0.0};
   return s;
+}
+
+/// A frame as only a broken partner sends it.
+Bytes damaged(const std::string& script) {
+  StateBatch batch{{0, 0.0, kContinue}, {at(4, 0.01, 0.04)}, {}, {}};
+  if (script == "twice") {
+    batch.states.push_back(batch.states[0]);
+    batch.shapes.push_back({4, 0.00125, 1.0, 1.0, 1});
+  }
+  Bytes frame = encode(batch);  // shapeless as it is
+  if (script == "swapped") std::reverse(frame.begin(), frame.begin() + 4);
+  if (script == "noise") frame.assign(64, std::byte{42});
+  if (script == "cut") frame.resize(frame.size() / 2);
+  if (script == "longer") frame.resize(frame.size() + 8);
+  return frame;
 }
 
 /// Plays the solid of whatever scene the fluid has read: it repeats the fluid's own numbers.
@@ -90,12 +115,18 @@ void solid(Channel& channel, const std::string& script) {
   hello.density.reset();
   session.agree(hello);
   if (script == "silent") pause();
+  for (const char* name : {"shapeless", "twice", "swapped", "noise", "cut", "longer"})
+    if (script == name) {
+      channel.send(0, damaged(script), {kTimeout, ""});
+      channel.receive(0, {kTimeout, "its complaint"});
+    }
   const double r = 0.00125, mass = 1250.0 * std::numbers::pi * r * r;
   bool stop = false;
   for (std::int64_t k = 0;; ++k) {
     std::vector<State> states;
     if (script != "insert" || k >= 5) states.push_back(at(4, 0.01, 0.04));
     if (script == "insert" && k >= 8 && k < 20) states.push_back(at(2, 0.005, 0.02));
+    if (script == "slow" && k % 20 == 3) usleep(300'000);
     if (script == "nan" && k == 3) states[0].v[1] = std::numeric_limits<double>::quiet_NaN();
     std::vector<Shape> shapes;
     for (const State& s : states) shapes.push_back({s.id, r, mass, 0.5 * mass * r * r, 1});
