@@ -79,7 +79,9 @@ std::vector<IntervalRecord> timeline(const Trace& trace) {
 }
 
 TraceComparison::TraceComparison(std::span<const IntervalRecord> scale) {
+  double radius = 0.0;
   for (const auto& record : scale) {
+    for (const Shape& s : record.shapes) radius = std::max(radius, s.radius);
     for (const State& s : record.states) {
       x_ = std::max(x_, norm(s.x));
       v_ = std::max(v_, norm(s.v));
@@ -90,6 +92,16 @@ TraceComparison::TraceComparison(std::span<const IntervalRecord> scale) {
       torque_ = std::max(torque_, norm(l.torque));
     }
   }
+  if (radius == 0.0) return;
+  // What symmetry makes zero is round-off; its own size is no scale. A millionth of what force and
+  // torque, velocity and spin amount to by the other is.
+  constexpr double part = 1e-6;
+  const double force = std::max(force_, part * torque_ / radius),
+               v = std::max(v_, part * omega_ * radius);
+  torque_ = std::max(torque_, part * force_ * radius);
+  omega_ = std::max(omega_, part * v_ / radius);
+  force_ = force;
+  v_ = v;
 }
 
 void TraceComparison::vectors(std::int64_t interval, std::int64_t id, const char* field,

@@ -27,7 +27,8 @@ std::vector<IntervalRecord> timeline(const Trace& trace);
 /// Where two exchanges differ first, and by how much at most.
 class TraceComparison {
  public:
-  /// @param scale  the exchange that sets what "relative" means: largest norm of each field in it
+  /// @param scale  the exchange that sets what "relative" means: largest norm of each field in it,
+  ///               where symmetry leaves only round-off a millionth of what goes with it
   explicit TraceComparison(std::span<const IntervalRecord> scale);
 
   void states(std::int64_t interval, std::span<const State> a, std::span<const State> b);

@@ -37,7 +37,7 @@ TEST_P(KeptTrace, TheSolidGivesItsStates) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, KeptTrace,
-                         testing::Values("settling_disc", "couette_disc", "disc_migration",
+                         testing::Values("settling_disc", "disc_migration",
                                          "drafting_kissing_tumbling"),
                          [](const auto& info) { return std::string(info.param); });
 
