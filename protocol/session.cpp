@@ -128,21 +128,24 @@ void FluidSession::learn_shapes(const StateBatch& batch) {
   }
 }
 
-void FluidSession::merge(const std::vector<StateBatch>& batches) {
-  for (const auto& batch : batches) learn_shapes(batch);
-  struct Origin {
-    std::size_t rank, record;
-  };
-  std::vector<Origin> origins;
+/// The usual case, without any table: the same particles on the same ranks in the same order as in
+/// the interval before, none of another shape.
+bool FluidSession::merge_as_before(const std::vector<StateBatch>& batches) {
+  for (std::size_t r = 0; r < batches.size(); ++r) {
+    const auto same = [](const State& s, std::int64_t id) { return s.id == id; };
+    if (before_.size() != batches.size() || !batches[r].shapes.empty() ||
+        !std::equal(batches[r].states.begin(), batches[r].states.end(), before_[r].begin(),
+                    before_[r].end(), same))
+      return false;
+  }
   for (std::size_t r = 0; r < batches.size(); ++r)
-    for (std::size_t i = 0; i < batches[r].states.size(); ++i) origins.push_back({r, i});
-  const auto state = [&](const Origin& o) -> const State& {
-    return batches[o.rank].states[o.record];
-  };
-  std::sort(origins.begin(), origins.end(),
-            [&](const Origin& a, const Origin& b) { return state(a).id < state(b).id; });
+    for (std::size_t i = 0; i < batches[r].states.size(); ++i)
+      arrival_.particles[order_[r][i]].state = batches[r].states[i];
+  return true;
+}
 
-  arrival_ = {batches.front().head, {}, std::nullopt, {}};
+void FluidSession::merge_bonds(const std::vector<StateBatch>& batches) {
+  arrival_.bonds.reset();
   for (const StateBatch& batch : batches) {
     if (!batch.bonds) continue;
     if (!arrival_.bonds) arrival_.bonds.emplace();
@@ -151,23 +154,50 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
     arrival_.bonds->list.insert(arrival_.bonds->list.end(), batch.bonds->list.begin(),
                                 batch.bonds->list.end());
   }
-  for (std::size_t r = 0; r < batches.size(); ++r) order_[r].resize(batches[r].states.size());
-  std::unordered_map<std::int64_t, Shape> present;
-  for (const Origin& o : origins) {
-    const State& s = state(o);
-    const auto shape = shapes_.find(s.id);
-    if (shape == shapes_.end())
-      throw BadMessage(fmt::format("particle {} came without radius and mass at interval {}", s.id,
-                                   next_interval_));
-    if (!present.emplace(s.id, shape->second).second)
-      throw BadMessage(fmt::format("particle {} came twice at interval {}", s.id, next_interval_));
+}
+
+void FluidSession::expect_finite_states() const {
+  for (const auto& [s, shape] : arrival_.particles) {
     expect_finite(s, s.x, "position", next_interval_);
     expect_finite(s, s.v, "velocity", next_interval_);
     expect_finite(s, s.omega, "angular velocity", next_interval_);
+  }
+}
+
+void FluidSession::merge(const std::vector<StateBatch>& batches) {
+  arrival_.head = batches.front().head;
+  arrival_.goodbye.reset();
+  merge_bonds(batches);
+  if (merge_as_before(batches)) return expect_finite_states();
+  for (const auto& batch : batches) learn_shapes(batch);
+  struct Origin {
+    std::int64_t id;
+    std::size_t rank, record;
+  };
+  std::vector<Origin> origins;
+  before_.assign(batches.size(), {});
+  for (std::size_t r = 0; r < batches.size(); ++r)
+    for (std::size_t i = 0; i < batches[r].states.size(); ++i) {
+      origins.push_back({batches[r].states[i].id, r, i});
+      before_[r].push_back(batches[r].states[i].id);
+    }
+  std::sort(origins.begin(), origins.end(),
+            [](const Origin& a, const Origin& b) { return a.id < b.id; });
+  arrival_.particles.clear();
+  for (std::size_t r = 0; r < batches.size(); ++r) order_[r].resize(batches[r].states.size());
+  std::unordered_map<std::int64_t, Shape> present;
+  for (const Origin& o : origins) {
+    const auto shape = shapes_.find(o.id);
+    if (shape == shapes_.end())
+      throw BadMessage(fmt::format("particle {} came without radius and mass at interval {}", o.id,
+                                   next_interval_));
+    if (!present.emplace(o.id, shape->second).second)
+      throw BadMessage(fmt::format("particle {} came twice at interval {}", o.id, next_interval_));
     order_[o.rank][o.record] = arrival_.particles.size();
-    arrival_.particles.push_back({s, shape->second});
+    arrival_.particles.push_back({batches[o.rank].states[o.record], shape->second});
   }
   shapes_ = std::move(present);  // a particle that vanished must introduce itself again
+  expect_finite_states();
 }
 
 void FluidSession::answer(std::span<const Load> loads, std::uint32_t flags) {
@@ -178,6 +208,7 @@ void FluidSession::answer(std::span<const Load> loads, std::uint32_t flags) {
   }
   for (int r = 0; r < channel_.remote_size(); ++r) {
     LoadBatch batch{head, {}};
+    batch.loads.reserve(order_[r].size());
     for (const std::size_t index : order_[r]) batch.loads.push_back(loads[index]);
     channel_.send(r, encode(batch), {timeout_, "it to take its loads"});
   }
@@ -232,19 +263,27 @@ void SolidSession::send_states(int rank, const StepHeader& head, std::span<const
                                std::span<const Shape> shapes,
                                const std::optional<BondReport>& bonds) {
   StateBatch batch{head, {}, {}, bonds};
-  auto& told = told_[rank];
-  std::unordered_map<std::int64_t, Shape> told_now;
+  batch.states.reserve(states.size());
+  const std::vector<Shape> told = std::move(told_[rank]);
+  std::unordered_map<std::int64_t, const Shape*> by_id;  // only where the order has changed
+  const auto told_of = [&](std::size_t place, std::int64_t id) -> const Shape* {
+    if (place < told.size() && told[place].id == id) return &told[place];
+    if (by_id.empty())
+      for (const Shape& s : told) by_id.emplace(s.id, &s);
+    const auto found = by_id.find(id);
+    return found == by_id.end() ? nullptr : found->second;
+  };
+  told_[rank].clear();
   sent_[rank].clear();
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (!touches(fluid_[rank], states[i].x, shapes[i].radius)) continue;
+    const Shape* known = told_of(batch.states.size(), states[i].id);
+    if (!known || std::memcmp(known, &shapes[i], sizeof(Shape)) != 0)
+      batch.shapes.push_back(shapes[i]);
     batch.states.push_back(states[i]);
     sent_[rank].push_back(i);
-    const auto known = told.find(states[i].id);
-    if (known == told.end() || std::memcmp(&known->second, &shapes[i], sizeof(Shape)) != 0)
-      batch.shapes.push_back(shapes[i]);
-    told_now.emplace(states[i].id, shapes[i]);
+    told_[rank].push_back(shapes[i]);
   }
-  told = std::move(told_now);
   channel_->send(rank, encode(batch), {timeout_, "it to take our states"});
 }
 

@@ -55,6 +55,9 @@ class FluidSession {
  private:
   void learn_shapes(const StateBatch& batch);
   void merge(const std::vector<StateBatch>& batches);
+  void merge_bonds(const std::vector<StateBatch>& batches);
+  bool merge_as_before(const std::vector<StateBatch>& batches);
+  void expect_finite_states() const;
 
   Channel& channel_;
   Hello mine_, partner_;
@@ -62,7 +65,8 @@ class FluidSession {
   std::int64_t next_interval_;
   std::unordered_map<std::int64_t, Shape> shapes_;
   Arrival arrival_;
-  std::vector<std::vector<std::size_t>> order_;  // [solid rank][record] -> index in arrival_
+  std::vector<std::vector<std::size_t>> order_;    // [solid rank][record] -> index in arrival_
+  std::vector<std::vector<std::int64_t>> before_;  // [solid rank] ids of the interval before
 };
 
 class SolidSession {
@@ -108,10 +112,10 @@ class SolidSession {
 
   Channel* channel_;
   double timeout_, waited_ = 0.0;
-  std::vector<Hello> fluid_;                                   // [fluid rank]
-  std::vector<std::unordered_map<std::int64_t, Shape>> told_;  // [fluid rank] shapes it knows
-  std::vector<std::vector<std::size_t>> sent_;                 // [fluid rank] states it got
-  StepHeader head_;                                            // of the states sent last
+  std::vector<Hello> fluid_;                    // [fluid rank]
+  std::vector<std::vector<Shape>> told_;        // [fluid rank] shapes sent last
+  std::vector<std::vector<std::size_t>> sent_;  // [fluid rank] states it got
+  StepHeader head_;                             // of the states sent last
   std::vector<Load> loads_;
 };
 

@@ -337,7 +337,7 @@ def said(factors):
     """A sentence's worth of a list of factors; 0 where none of ours is as exact, or as cheap."""
     good = [f for f in factors if f]
     if not good:
-        return "never"
+        return "never 1"
     text = f"{min(good):.2g}" if len(good) == 1 else f"{min(good):.2g} … {max(good):.2g}"
     return text + ("" if len(good) == len(factors) else f" (in {len(good)} of {len(factors)} points)")
 
@@ -407,6 +407,9 @@ def text_of(case, rows):
     lines = [f"## {case}: {CASES_OF[case][5]}", "", f"![{case}]({case}.png)", ""]
     for family, name in ((PAPERS, "the papers' scheme"), (STAIRS, "the staircase")):
         cost, error = advantage(rows, family)
+        if not cost:
+            lines.append(f"None of {name}'s runs here came to its end.  ")
+            continue
         lines.append(f"Ours against the front of {name}: {said(cost)} times faster at its error, {said(error)} times more exact in its time.  ")
     good = [r for r in rows if r["family"] == OURS and r["status"] == "ok"]
     for wanted in (5.0, 2.0, 1.0):
