@@ -13,7 +13,7 @@ using test::kLiggghts;
 using test::mpirun;
 using test::SettlingDisc;
 
-constexpr double kLimit = 10.0;
+constexpr double kLimit = 10.0 * BPLBM_PATIENCE;
 const std::string kPeer = test::kBin + "/scripted_peer";
 
 void expect_end(const JobResult& job, int exit_code, const std::vector<std::string>& words) {

@@ -52,7 +52,7 @@ JobResult run(const std::string& command, const std::string& folder, double limi
   int status = 0;
   while (waitpid(child, &status, WNOHANG) == 0) {
     drain();
-    if (elapsed() > limit_seconds) {
+    if (elapsed() > limit_seconds * BPLBM_PATIENCE) {
       result.timed_out = true;
       kill(-child, SIGKILL);
       waitpid(child, &status, 0);
