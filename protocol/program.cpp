@@ -13,7 +13,7 @@ namespace protocol {
 
 namespace {
 
-constexpr double kFarewellSeconds = 4.0;
+constexpr double kFarewellSeconds = 3.0;
 volatile std::sig_atomic_t caught = 0;
 std::timespec caught_at{};
 

@@ -12,7 +12,7 @@
 namespace dem {
 namespace {
 
-constexpr double kFarewellSeconds = 4.0;
+constexpr double kFarewellSeconds = 3.0;
 MPI_Comm local = MPI_COMM_NULL;
 std::string log_file;
 bool meant = false;
