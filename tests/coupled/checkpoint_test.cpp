@@ -90,11 +90,11 @@ TEST_F(CheckpointTest, ASignalEndsBothWithACheckpoint) {
       "[run]\nend_time = 1.0\ncheckpoint_every = 10.0\n[numerics]\n"
       "cells_per_diameter = 40\n[output]\nfields_every = 1.0\n");
   expect_ok(run("whole"));
-  const JobResult cut = test::run("(" + job("parts", "") +
-                                      ") & job=$!; until [ -s parts/probes.csv ]; do sleep 0.05; "
-                                      "done; sleep 0.4; pkill -TERM -f '^" +
-                                      kLbm + " '; wait $job; echo code $?",
-                                  folder_.path(), 60.0);
+  const JobResult cut =
+      test::run("(" + job("parts", "") +
+                    ") & job=$!; until [ -s parts/probes.csv ]; do sleep 0.05; "
+                    "done; sleep 0.4; pkill -TERM -x -P $job lbm; wait $job; echo code $?",
+                folder_.path(), 60.0);
   EXPECT_NE(cut.output.find("code 1"), std::string::npos) << cut.output;
   EXPECT_NE(cut.output.find("stopped by a signal; --restart goes on"), std::string::npos)
       << cut.output;
@@ -158,11 +158,13 @@ TEST_F(CheckpointTest, Slow_KilledTwentyTimesItAlwaysGoesOn) {
   for (int trial = 0; trial < 20; ++trial) {
     const bool first = !std::filesystem::exists(folder_.path() + "/parts/checkpoint.h5");
     const char* victim = trial % 3 == 0 ? "lbm" : trial % 3 == 1 ? "liggghts" : "mpirun";
-    const JobResult cut =
-        test::run("(" + job("parts", first ? "" : "--restart") + ") & job=$!; sleep " +
-                      std::to_string(moment(random)) + "; pkill -KILL -x " + victim +
-                      "; sleep 0.1; pkill -KILL -x 'lbm|liggghts|mpirun'; wait $job; true",
-                  folder_.path(), 60.0);
+    const JobResult cut = test::run(
+        "(" + job("parts", first ? "" : "--restart") + ") & job=$!; sleep " +
+            std::to_string(moment(random)) + "; children=$(pgrep -P $job); " +
+            (std::string(victim) == "mpirun" ? "kill -KILL $job"
+                                             : "pkill -KILL -x -P $job " + std::string(victim)) +
+            "; sleep 0.1; kill -KILL $children $job 2> /dev/null; wait $job; true",
+        folder_.path(), 60.0);
     ASSERT_FALSE(cut.timed_out);
     EXPECT_EQ(cut.output.find("is missing"), std::string::npos) << trial << cut.output;
     EXPECT_EQ(cut.output.find("checkpoint to restart"), std::string::npos) << trial << cut.output;
