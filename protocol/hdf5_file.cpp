@@ -18,17 +18,19 @@ void check(herr_t status, const std::string& what) {
 
 Handle open_file(const std::string& path, Open mode) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // our exceptions speak instead of its stack dump
-  const bool creates = mode == Open::Create;
+  const bool creates = mode == Open::Create || mode == Open::CreateForReaders;
   std::FILE* probe = std::fopen(path.c_str(), creates || mode == Open::Append ? "ab" : "rb");
   if (!probe)
     throw std::runtime_error("cannot open " + path + ": " + std::strerror(errno) +
                              (creates ? "; choose a folder that exists and is writable" : ""));
   std::fclose(probe);
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make access properties");
-  check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "set the version");
+  if (mode == Open::CreateForReaders || mode == Open::ReadWhileWritten)
+    check(H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), "set the version");
   const std::string what = "open " + path + " (is it a complete HDF5 file?)";
   switch (mode) {
     case Open::Create:
+    case Open::CreateForReaders:
       return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, what};
     case Open::Append:
       return {H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose, what};

@@ -38,7 +38,10 @@ class Handle {
 /// @throws std::runtime_error naming `what` where an HDF5 call failed
 void check(herr_t status, const std::string& what);
 
-enum class Open { Create, Append, Read, ReadWhileWritten };
+/// CreateForReaders: may be read while it is written (SWMR), but is marked as open meanwhile, and
+/// after a kill only ReadWhileWritten opens it. Create, Append: no mark; what was closed stays
+/// readable.
+enum class Open { Create, CreateForReaders, Append, Read, ReadWhileWritten };
 
 /// @throws std::runtime_error with the path and a reason a user can act on
 Handle open_file(const std::string& path, Open mode);

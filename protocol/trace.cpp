@@ -14,7 +14,7 @@ constexpr std::uint64_t kFlushFrames = 64;
 
 TraceWriter::TraceWriter(const std::string& path, const std::string& recorder, int local_rank,
                          int remote_size)
-    : file_(hdf5::open_file(path, hdf5::Open::Create)),
+    : file_(hdf5::open_file(path, hdf5::Open::CreateForReaders)),
       frames_(Table<FrameRow>::create(file_, "frames")),
       states_(Table<State>::create(file_, "states")),
       shapes_(Table<Shape>::create(file_, "shapes")),

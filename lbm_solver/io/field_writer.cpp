@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "protocol/hdf5_file.h"
@@ -48,10 +49,7 @@ std::string group_name(std::size_t index) {
 
 FieldWriter::FieldWriter(const std::string& folder, const Units& units, double keep_until)
     : folder_(folder), units_(units) {
-  if (keep_until > 0.0) {
-    keep_frames(keep_until);
-    return;
-  }
+  if (keep_until > 0.0 && keep_frames(keep_until)) return;
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Create);
   protocol::hdf5::set_attribute(file, "cell", units.dx);
   protocol::hdf5::set_attribute(file, "origin_x", units.origin.x());
@@ -59,11 +57,24 @@ FieldWriter::FieldWriter(const std::string& folder, const Units& units, double k
 }
 
 /// Finds the frames of the run before; those from `until` on are written again.
-void FieldWriter::keep_frames(double until) {
-  const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Append);
+/// @return false where they cannot be read: a kill while a frame was being written; they are put
+/// aside
+bool FieldWriter::keep_frames(double until) {
+  const std::string path = folder_ + "/fields.h5", aside = folder_ + "/fields-cut-off.h5";
+  Handle file;
+  try {
+    file = protocol::hdf5::open_file(path, Open::Append);
+  } catch (const std::runtime_error&) {
+    fmt::print(stderr,
+               "lbm | warning | {} was cut off in the middle of a frame: it is kept as {}, and the "
+               "frames from here on go to a new one\n",
+               path, aside);
+    std::filesystem::rename(path, aside);
+    return false;
+  }
   for (;;) {
     const std::string name = group_name(entries_.size());
-    if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) return;
+    if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) return true;
     const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
     const double time = protocol::hdf5::real_attribute(group, "time");
     if (time >= until) break;
@@ -82,7 +93,7 @@ void FieldWriter::keep_frames(double until) {
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
-    if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) return;
+    if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) return true;
     check(H5Ldelete(file, name.c_str(), H5P_DEFAULT), "drop " + name);
   }
 }

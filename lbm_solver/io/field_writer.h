@@ -22,7 +22,8 @@ struct FieldFrame {
 };
 
 /// Writes frames to `fields.h5` and keeps `fields.xdmf` beside it, which ParaView opens. The file
-/// is closed after every frame: a kill loses at most the frame in progress.
+/// is closed after every frame: a kill loses the frame in progress, seldom (while the file is being
+/// closed) makes the file unreadable; a restart then puts it aside and begins a new one.
 class FieldWriter {
  public:
   /// @param folder      must exist
@@ -35,7 +36,7 @@ class FieldWriter {
   std::string fluid_grid(std::size_t index) const;
   std::string particle_grid(std::size_t index) const;
   std::string bond_grid(std::size_t index) const;
-  void keep_frames(double until);
+  bool keep_frames(double until);
   struct Entry {
     double time;
     int nx, ny;

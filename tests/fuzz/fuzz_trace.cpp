@@ -43,7 +43,7 @@ FrameRow row_of(const std::uint8_t* b) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string path = "/dev/shm/bplbm_fuzz_" + std::to_string(getpid()) + ".h5";
   {
-    const hdf5::Handle file = hdf5::open_file(path, hdf5::Open::Create);
+    const hdf5::Handle file = hdf5::open_file(path, hdf5::Open::CreateForReaders);
     auto frames = Table<FrameRow>::create(file, "frames");
     for (std::size_t at = 0; at + 11 <= size && at < 110; at += 11) {
       const FrameRow row = row_of(data + at);
