@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, quantity, result, studies, write_table
+from pictures import Run, animate, draw_speed, quantity, result, studies, write_table
 
 HEIGHT = 0.01
 PAPER = {"10 mm": 21 * 3600 + 31 * 60, "40 mm": 95 * 3600 + 26 * 60}  # s of wall time
@@ -76,6 +76,8 @@ def main():
     figure.colorbar(image, ax=right, label="speed [m/s]")
     figure.tight_layout()
     run.save(figure, "migration.png")
+    animate(run, "animation.gif", lambda ax, t, name: (draw_speed(ax, run, name, 0.14, length_unit=1e-3),
+                                                       ax.set_title(f"t = {t:.2f} s")), (4.0, 4.0))
 
 
 if __name__ == "__main__":
