@@ -22,23 +22,11 @@ import time
 import matplotlib.pyplot as plt
 import numpy as np
 from launch import CASES, ROOT, environment
-from pictures import Run, read_table
+from pictures import Run
+from report_cases import (BODIES, CASES_OF, EVERYTHING, FEATURE_SCENES, OPERATORS, OURS, PAPERS, SCHEMES, STAIRS, hard_cases,
+                          merged)
 
 OUT = ROOT / "out" / "report"
-OURS, PAPERS, STAIRS = "ours", "papers", "staircase"
-SCHEMES = {
-    "default, bodies at rest: TRT, Holdych": (OURS, {}),
-    "default, free bodies: TRT, layered Holdych": (OURS, {"solid_term": "layered_holdych"}),
-    "central moments, layered Noble–Torczynski":
-        (None, {"collision": "central_moment", "solid_term": "layered_noble_torczynski"}),
-    "TRT, Noble–Torczynski": (None, {"collision": "trt", "solid_term": "noble_torczynski"}),
-    "papers: BGK, Noble–Torczynski": (PAPERS, {"collision": "bgk", "solid_term": "noble_torczynski"}),
-    "BGK, Noble–Torczynski, B = ε": (None, {"collision": "bgk", "solid_term": "noble_torczynski", "weight": "fraction"}),
-    "staircase: BGK, bounce-back": (STAIRS, {"collision": "bgk", "scheme": "bounce_back"}),
-    "TRT, bounce-back": (STAIRS, {"collision": "trt", "scheme": "bounce_back"}),
-    "TRT, interpolated bounce-back": (None, {"collision": "trt", "scheme": "interpolated_bounce_back"}),
-    "TRT, implicit immersed boundary": (None, {"collision": "trt", "scheme": "implicit_immersed_boundary"}),
-}
 
 
 def toml(tables):
@@ -50,14 +38,6 @@ def toml(tables):
             text += (f"[[{name}]]\n" if isinstance(table, list) else f"[{name}]\n")
             text += "".join(f"{k} = {value(v)}\n" for k, v in one.items())
     return text
-
-
-def merged(*overlays):
-    out = {}
-    for overlay in overlays:
-        for name, table in overlay.items():
-            out[name] = table if isinstance(table, list) else {**out.get(name, {}), **table}
-    return out
 
 
 def module_of(scene):
@@ -96,109 +76,7 @@ def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0):
     return code, error, megabytes
 
 
-# ---- cases: name -> rows (label, family, overlays of places, files), and how to measure ----------------------------
-
-
-def array_rows(full):
-    sides = [1e-4, 5e-5, 2.5e-5] + ([1.25e-5] if full else [])
-    for label, (family, numerics) in SCHEMES.items():
-        for h in sides:
-            for tau in (0.505, 0.6, 1.0, 1.5) if full else (0.6, 1.5):
-                if tau < 0.6 and h < 2e-5:
-                    continue
-                step = (tau - 0.5) / 3 * h * h / 1e-6
-                places = [{"obstacle": [{"centre": [0.0005 + x * h, 0.0005 + y * h], "diameter": 5.046265044e-4}],
-                           "numerics": {**numerics, "cell": h, "time_step": step},
-                           "run": {"end_time": 8.0}, "output": {"fields_every": 8.0, "probe_every": 0.1}}
-                          for x, y in ((0, 0), (0.5, 0.5), (0.23, 0.41))]
-                yield label, family, f"D/h {5.046e-4 / h:.0f}, τ {tau}", places, ()
-
-
-def cylinder_rows(full):
-    for label, (family, numerics) in SCHEMES.items():
-        if "free bodies" in label or "implicit" in label:
-            continue
-        for h in (0.01, 0.005) if full or family else (0.01,):
-            yield label, family, f"D/h {0.1 / h:.0f}", [{"numerics": {**numerics, "cell": h}}], ()
-
-
-def couette_rows(full):
-    for label, (family, numerics) in SCHEMES.items():
-        if "bodies at rest" in label or "implicit" in label or (label.startswith("BGK") and not family):
-            continue
-        for h in (2e-4, 1e-4) + ((5e-5,) if full else ()):
-            yield label, family, f"gap/h {1.6e-3 / h:.0f}", [{"numerics": {**numerics, "cell": h}}], ()
-
-
-def settling_rows(full):
-    fall = {"run": {"end_time": 0.6}, "output": {"fields_every": 0.6, "probe_every": 0.002}}
-    for label, (family, numerics) in SCHEMES.items():
-        if "bodies at rest" in label or "implicit" in label or "B = ε" in label:
-            continue
-        for cells in (5, 10, 20) + ((40,) if full else ()):
-            coupling = {"substeps": 1} if family == PAPERS else {}
-            overlay = merged(fall, {"numerics": {"collision": "auto", "solid_term": "auto", **numerics,
-                                                 "cells_per_diameter": cells}, "coupling": coupling})
-            if coupling:  # soft enough for one solid step a fluid step; it falls, and touches nothing until then
-                overlay = merged(overlay, {"particles": {"contact_stiffness": 100.0}})
-            yield label, family, f"D/h {cells}", [overlay], ()
-    for text, change in (("step × 2", {"fluid": {"velocity_scale": 0.03}}), ("step / 4", {"fluid": {"velocity_scale": 0.24}}),
-                         ("overlapped", {"coupling": {"schedule": "overlapped"}}),
-                         ("3 fluid steps an interval", {"coupling": {"fluid_steps": 3}})):
-        yield SCHEMES_FREE, OURS, f"D/h 10, {text}", [merged(fall, {"numerics": {"cells_per_diameter": 10}}, change)], ()
-
-
-SCHEMES_FREE = "default, free bodies: TRT, layered Holdych"
-COUETTE = 4 * np.pi * 1e-3 * 1.0 * 0.0016**2 * 0.0032**2 / (0.0032**2 - 0.0016**2)
-
-
-def couette_torque(run, module):
-    table = read_table(run.folder / "obstacles.csv")
-    return -table["torque"][table["obstacle"] == 2][-1] / run.parameters["depth"]
-
-
-CASES_OF = {  # scene, rows, measure, reference, its uncertainty, source
-    "array": ("cylinder_array", array_rows, lambda run, m: m.drag(run), 51.526949, 3e-4,
-              "drag of a square array, Stokes flow; spectral, Sangani and Acrivos 1982"),
-    "cylinder": ("cylinder_flow", cylinder_rows, lambda run, m: m.coefficients(run)[1][-1], 5.57953523384, 1e-6,
-                 "drag of a cylinder at Re 20; Schäfer and Turek 2D-1"),
-    "couette": ("taylor_couette", couette_rows, couette_torque, COUETTE, 1e-9, "torque between cylinders; exact"),
-    "settling": ("settling_disc", settling_rows, lambda run, m: m.reynolds(run)[1].max(), 17.345, 4.3e-3,
-                 "largest Re of a settling disc; 17.27 … 17.42 in the literature"),
-}
-
-# ---- hard cases --------------------------------------------------------------------------------------------------
-
-OPERATORS = ("bgk", "trt", "central_moment", "recursive_regularised", "auto")
-BODIES = {"auto": {}, "Noble–Torczynski": {"solid_term": "noble_torczynski"}, "Holdych": {"solid_term": "holdych"},
-          "superposition": {"solid_term": "superposition"}, "B = ε": {"solid_term": "noble_torczynski", "weight": "fraction"},
-          "bounce-back": {"scheme": "bounce_back"}, "implicit IBM": {"scheme": "implicit_immersed_boundary"}}
-QUIET = {"output": {"fields_every": 100.0, "probe_every": 0.01}}
-
-
-def hard_cases(full):
-    """name, scene, files, overlay, whether a free body is in it."""
-    yield "cylinder Re 100, D/h 10, open channel", "cylinder_flow", ("variant-d10.toml",), \
-        {"run": {"end_time": 12.0 if full else 6.0}}, True
-    for re_text, nu in (("1e4", 1e-4), ("1e5", 1e-5)):
-        for u in (0.05, 0.1, 0.2) if full else (0.1,):
-            yield f"shear layer Re {re_text}, u/C {u}", "shear_layer", (), \
-                {"fluid": {"kinematic_viscosity": nu}, "numerics": {"time_step": u / 128}}, False
-    yield "settling Re 480, D/h 12", "settling_disc", ("variant-glowinski2.toml",), \
-        merged(QUIET, {"numerics": {"cells_per_diameter": 12}, "run": {"end_time": 0.5}}), True
-    for ratio in (1.0, 0.5, 0.1):
-        yield f"free disc, ρ_s/ρ_f {ratio:g}", "settling_disc", (), \
-            merged(QUIET, {"particles": {"density": 1000.0 * ratio, "start": [[0.01, 0.02]]},
-                           "numerics": {"cells_per_diameter": 10, "solid_term": "auto", "collision": "auto"},
-                           "fluid": {"velocity_scale": 0.15}, "run": {"end_time": 0.25}}), True
-    yield "free disc, τ = 1.5", "couette_disc", (), {"numerics": {"time_step": 0.00333}, "run": {"end_time": 10.0}}, True
-    yield "pressure jump of 600 kPa into a packing", "hydraulic_fracture", (), \
-        merged(QUIET, {"run": {"end_time": 0.003}}), True
-    if full:
-        yield "cavity Re 10 000", "lid_driven_cavity", ("variant-re10000.toml",), {"run": {"end_time": 100.0}}, False
-
-
-def verdict(code, error, end):
+def verdict(code, error):
     if code == 0:
         return "bounded"
     if code == 2:
@@ -218,18 +96,12 @@ def stability(full, again):
         for choice, change in choices:
             folder = OUT / "stability" / re.sub(r"[^\w.]+", "_", f"{name}-{choice}")
             code, error, _ = run_scene(folder, scene, merged(overlay, change), files, again, 300.0)
-            rows.append({"case": name, "choice": choice, "verdict": verdict(code, error, 0), "reason": error})
+            rows.append({"case": name, "choice": choice, "verdict": verdict(code, error), "reason": error})
             progress("stability", f"{name} | {choice}: {rows[-1]['verdict']}")
     return rows
 
 
 # ---- only what a scene needs -------------------------------------------------------------------------------------
-
-EVERYTHING = {"numerics": {"smagorinsky": 1e-3}, "fluid": {"body_force": [1e-12, 0.0]}}
-FEATURE_SCENES = {"taylor_green": {}, "cylinder_flow": {"run": {"end_time": 8.0}}, "lid_driven_cavity": {"run": {"end_time": 20.0}},
-                  "settling_disc": {}, "couette_disc": {"run": {"end_time": 20.0}}, "disc_migration": {},
-                  "drafting_kissing_tumbling": {}, "suspension_migration": {"run": {"end_time": 0.05}}}
-
 
 def features(again):
     """Each scene as it is, and with a turbulence model, a body force, lubrication and a virtual mass that it does
@@ -282,7 +154,7 @@ def measure(case, full, again):
             folder = OUT / case / re.sub(r"[^\w.]+", "_", f"{label}-{size}-{i}")
             code, error, memory = run_scene(folder, scene, overlay, files, again)
             if code:
-                status = verdict(code, error, 0)
+                status = verdict(code, error)
                 break
             run = Run(folder)
             summary = run.summary

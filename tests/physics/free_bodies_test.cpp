@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Discs that move freely, coupled as the programs are: release, light discs, periodic sides,
+/// noise, the viscosity of a suspension.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lbm_solver/coupling/particles.h"
+#include "tests/support/scheme_fluid.h"
+
+namespace {
+
+using namespace lbm;
+using test::Case, test::make;
+
+/// A disc that a solid program would integrate, released from rest in a closed box.
+struct Released {
+  double early_acceleration = 0.0;  ///< mean over the first `early` seconds
+  double velocity = 0.0;            ///< at the end
+  double noise = 0.0;               ///< largest change of force in a step over the weight, late
+};
+
+Released release(double ratio, double viscosity, double seconds, double early,
+                 std::optional<double> virtual_mass = {}) {
+  const double diameter = 0.0025, radius = 0.5 * diameter, dx = diameter / 10, dt = 1e-4;
+  const Units units{dx, dt, 1000.0, 1.0, {0.0, 0.0}};
+  Scene scene;
+  scene.fluid = {.density = 1000.0, .viscosity = viscosity, .gravity = {0.0, -9.8}};
+  scene.coupling.emplace().virtual_mass = virtual_mass;
+  scene.particles.emplace();
+  Fluid fluid = make({"", "layered_holdych"}, {80, 160, Side::Wall, Side::Wall}, "trt",
+                     0.5 + 3.0 * viscosity * dt / (dx * dx));
+  Particles particles(units, scene);
+  const double mass = ratio * 1000.0 * std::numbers::pi * radius * radius;
+  protocol::Particle p{{1, {0.01, 0.02, 0.0}, {}, {}},
+                       {1, radius, mass, 0.5 * mass * radius * radius, 1}};
+  Released result;
+  double last = 0.0;
+  const int steps = static_cast<int>(seconds / dt), early_steps = static_cast<int>(early / dt);
+  for (int s = 1; s <= steps; ++s) {
+    particles.arrive(std::vector{p}, dt);
+    fluid.place(particles.discs(0.0));
+    fluid.step();
+    particles.add(fluid.loads());
+    const auto load = particles.mean_loads(1)[0];
+    for (int k = 0; k < 2; ++k) {
+      const double a = load.force[k] / mass + scene.fluid.gravity[k];
+      p.state.x[k] += dt * (p.state.v[k] + 0.5 * dt * a);
+      p.state.v[k] += dt * a;
+    }
+    p.state.omega[2] += dt * load.torque[2] / p.shape.inertia;
+    if (s == early_steps) result.early_acceleration = p.state.v[1] / early;
+    if (s > steps / 2)
+      result.noise = std::max(result.noise, std::abs(load.force[1] - last) / (mass * 9.8));
+    last = load.force[1];
+  }
+  result.velocity = p.state.v[1];
+  return result;
+}
+
+TEST(Release, StartsWithTheAddedMassOfADisc) {
+  // a = (ρ_r - 1) g / (ρ_r + 1) within 15 %: sound takes 4 steps across the disc, and a boundary
+  // layer of √(νt) = 0.1 mm adds 15 % of the displaced mass at 10 ms.
+  for (const double ratio : {2.0, 0.5}) {
+    const double exact = -(ratio - 1.0) * 9.8 / (ratio + 1.0);
+    EXPECT_NEAR(release(ratio, 1e-6, 0.01, 0.01).early_acceleration / exact, 1.0, 0.15) << ratio;
+  }
+}
+
+TEST(LightParticles, RiseSteadilyDownToATenthOfTheFluidsDensity) {
+  for (const double ratio : {0.9, 0.75, 0.5, 0.25, 0.1}) {
+    const Released r = release(ratio, 1e-5, 0.1, 0.01);
+    EXPECT_GT(r.velocity, 0.01) << ratio;
+    EXPECT_LT(r.velocity, 0.15) << ratio;
+    EXPECT_LT(r.noise, 0.1) << ratio;  // measured: 0.04 at a tenth
+  }
+}
+
+TEST(LightParticles, VirtualMassDoesNotChangeTheMotion) {
+  // 0.5: where the plain coupling is still stable. 0.2 %: a lag of a few steps in 0.1 s.
+  const double with = release(0.5, 1e-5, 0.1, 0.01, 2.0).velocity;
+  const double without = release(0.5, 1e-5, 0.1, 0.01, 0.0).velocity;
+  EXPECT_NEAR(with / without, 1.0, 0.002);
+}
+
+/// A free disc in lattice units (cells, steps, density of the fluid 1), coupled as the programs
+/// are.
+struct FreeRun {
+  std::vector<Vec2> place, velocity;
+  std::vector<double> force_y;
+};
+FreeRun free_run(const Domain& domain, const Case& c, const std::string& collision, double tau,
+                 double ratio, double radius, const Vec2& start, const Vec2& gravity, int steps,
+                 int fluid_steps = 1) {
+  Scene scene;
+  scene.fluid = {.density = 1.0, .viscosity = (tau - 0.5) / 3.0, .gravity = gravity};
+  scene.coupling.emplace();
+  scene.particles.emplace();
+  Fluid fluid = make(c, domain, collision, tau);
+  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene);
+  const double mass = ratio * std::numbers::pi * radius * radius, interval = fluid_steps;
+  protocol::Particle p{{1, {start.x(), start.y(), 0.0}, {}, {}},
+                       {1, radius, mass, 0.5 * mass * radius * radius, 1}};
+  FreeRun run;
+  for (int s = 0; s < steps; s += fluid_steps) {
+    particles.arrive(std::vector{p}, interval);
+    for (int k = 0; k < fluid_steps; ++k) {
+      fluid.place(particles.discs(k));
+      fluid.step();
+      particles.add(fluid.loads());
+    }
+    const auto load = particles.mean_loads(fluid_steps)[0];
+    for (int k = 0; k < 2; ++k) {
+      const double a = load.force[k] / mass + gravity[k];
+      p.state.x[k] += interval * (p.state.v[k] + 0.5 * interval * a);
+      p.state.v[k] += interval * a;
+    }
+    p.state.omega[2] += interval * load.torque[2] / p.shape.inertia;
+    run.place.emplace_back(p.state.x[0], p.state.x[1]);
+    run.velocity.emplace_back(p.state.v[0], p.state.v[1]);
+    run.force_y.push_back(load.force[1]);
+  }
+  return run;
+}
+
+TEST(PeriodicCrossing, OfFacesAndCornersChangesNoTrajectory) {
+  const Domain domain{48, 40, Side::Periodic, Side::Periodic};
+  const Vec2 inside(20.0 + 77.0 / 1024, 19.0 + 301.0 / 1024), gravity(2e-5, -1e-5);
+  const auto from = [&](const Vec2& start) {
+    return free_run(domain, {"", "layered_holdych"}, "trt", 0.7, 2.5, 5.25, start, gravity, 1000);
+  };
+  const FreeRun reference = from(inside);
+  EXPECT_GT((reference.place.back() - inside).norm(), 2.0);  // it goes somewhere
+  for (const Vec2& shift : {Vec2(24.0, 0.0), Vec2(0.0, 20.0), Vec2(25.0, 18.0)}) {
+    const FreeRun shifted = from(inside + shift);
+    EXPECT_LT((shifted.velocity.back() - reference.velocity.back()).norm(), 1e-10);
+    EXPECT_LT((shifted.place.back() - shift - reference.place.back()).norm(), 1e-10);
+  }
+}
+
+TEST(FastSettling, HasLittleForceNoiseAtReynolds300) {
+  // D/h = 12, τ = 0.5048; what a running mean of 50 steps takes from the force, over the weight: 5
+  // %
+  const Domain domain{96, 500, Side::Wall, Side::Wall};
+  const double gravity = 4.4e-4, radius = 6.0, ratio = 1.25;
+  const FreeRun run = free_run(domain, {"", "layered_noble_torczynski"}, "central_moment", 0.5048,
+                               ratio, radius, {47.7, 460.3}, {0.0, -gravity}, 8000);
+  const double speed = -run.velocity[7999].y(), viscosity = 0.0048 / 3.0;
+  EXPECT_NEAR(speed * 2.0 * radius / viscosity, 310.0, 60.0);
+  double square = 0.0;
+  int count = 0;
+  for (std::size_t k = 4000; k < 7950; ++k, ++count) {
+    double mean = 0.0;
+    for (std::size_t j = k - 25; j < k + 25; ++j) mean += run.force_y[j] / 50.0;
+    square += (run.force_y[k] - mean) * (run.force_y[k] - mean);
+  }
+  const double weight = ratio * std::numbers::pi * radius * radius * gravity;
+  EXPECT_LT(std::sqrt(square / count) / weight, 0.05);
+}
+
+/// (μ_r - 1)/φ of one disc, free to turn, in the middle of a box of n × n cells between moving
+/// walls: the shear stress at a wall over that of the fluid alone. Re = γR²/ν = 0.02.
+double viscosity_gain(const Case& c, double tau, double diameter, double fraction) {
+  const double radius = 0.5 * diameter, nu = (tau - 0.5) / 3.0,
+               shear = 0.02 * nu / (radius * radius);
+  const double area = std::numbers::pi * radius * radius;
+  const int n = static_cast<int>(std::lround(std::sqrt(area / fraction)));
+  const Domain domain{n, n, Side::Periodic, Side::Wall};
+  const Vec2 wall(0.5 * shear * n, 0.0);
+  Fluid fluid = make(c, domain, "trt", tau);
+  for (const auto& [side, u] : {std::pair{SideName::Top, wall}, {SideName::Bottom, Vec2(-wall)}})
+    fluid.add(std::make_unique<VelocityPatch>(side_links(n, n, side, 0, n, true), u, false, 0, n,
+                                              InTime{}));
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x)
+      fluid.set_equilibrium(x, y, 1.0, {shear * (y + 0.5 - 0.5 * n), 0.0});
+  Disc disc{1, {0.5 * n + 0.23, 0.5 * n}, radius, {0.0, 0.0}, -0.5 * shear};
+  for (int s = 0; s < n * n / nu; ++s) {  // ten times the slowest decay
+    fluid.place(std::vector{disc});
+    fluid.step();
+    disc.spin += 0.025 * fluid.loads()[0].torque / area;  // until none is left
+  }
+  double u = 0.0;
+  for (int x = 0; x < n; ++x) u += fluid.cell(x, n - 4).u.x() / n;
+  return ((wall.x() - u) / 3.5 / shear - 1.0) / (area / (n * n));
+}
+
+TEST(DiluteSuspension, HasTheViscosityOfFreeDiscs) {
+  // 1 + 2φ [Brady 1984] as φ → 0; the gain is linear in φ where walls and images are far.
+  // 10 %: the target at ten cells.
+  const Case c{"", "layered_holdych"};
+  for (const double tau : {0.6, 1.0, 1.5}) {
+    const double one = viscosity_gain(c, tau, 10.0, 0.01);
+    const double two = viscosity_gain(c, tau, 10.0, 0.02);
+    const double four = viscosity_gain(c, tau, 10.0, 0.04);
+    const double slope = (-4.0 * one - two + 5.0 * four) / 14.0;  // least squares over 1, 2, 4
+    const double limit = (one + two + four) / 3.0 - slope * 7.0 / 3.0;
+    EXPECT_NEAR(limit / 2.0, 1.0, 0.1) << tau;
+  }
+}
+
+// (Over 50 steps this disc blows up: its velocity then changes by more than it has in an interval.)
+TEST(Averaging, OverSeveralFluidStepsKeepsTheTerminalVelocity) {
+  const Domain domain{64, 300, Side::Wall, Side::Wall};
+  const auto speed = [&](int fluid_steps) {
+    return free_run(domain, {"", "layered_holdych"}, "trt", 0.7, 1.5, 5.0, {32.0, 260.0},
+                    {0.0, -4e-5}, 6000, fluid_steps)
+        .velocity.back()
+        .y();
+  };
+  const double one = speed(1);
+  for (const int fluid_steps : {2, 5, 10}) EXPECT_NEAR(speed(fluid_steps) / one, 1.0, 0.01);
+}
+
+}  // namespace
