@@ -7,6 +7,7 @@
 #include <random>
 
 #include "lbm_solver/immersed/disc_fraction.h"
+#include "tests/reference/disc_area.h"
 
 namespace {
 
@@ -25,30 +26,29 @@ std::vector<double> fraction_map(const Disc& disc, const Domain& d) {
   return map;
 }
 
-double sampled_fraction(double dx, double dy, double radius) {
-  constexpr int n = 200;
-  int inside = 0;
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      const double x = dx + (i + 0.5) / n - 0.5, y = dy + (j + 0.5) / n - 0.5;
-      inside += x * x + y * y < radius * radius;
-    }
-  return static_cast<double>(inside) / (n * n);
-}
-
-TEST(DiscFraction, AgreesWithDenseSampling) {
+TEST(DiscFraction, ChordsAreNearTheExactArea) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> angle(0.0, 2.0 * std::numbers::pi), offset(-0.7, 0.7);
   double squares = 0.0;
   constexpr int trials = 2000;
   for (int t = 0; t < trials; ++t) {
     const double a = angle(random), r = 5.0 + offset(random);
-    const double error = disc_fraction(r * std::cos(a), r * std::sin(a), 5.0) -
-                         sampled_fraction(r * std::cos(a), r * std::sin(a), 5.0);
+    const double x = r * std::cos(a), y = r * std::sin(a);
+    const double exact = test::exact_fraction(x, y, 5.0), error = disc_fraction(x, y, 5.0) - exact;
+    EXPECT_NEAR(test::sampled_fraction(x, y, 5.0, 200), exact, 0.002);  // half a row of points
     squares += error * error;
     EXPECT_LT(std::abs(error), 0.06);  // a corner that both Gauss chords miss
   }
   EXPECT_LT(std::sqrt(squares / trials), 0.007);  // measured for this rule at D = 10: 0.005
+}
+
+TEST(DiscFraction, ExactAreasAddUpToTheDisc) {
+  for (const double radius : {0.4, 2.0, 5.3}) {
+    double area = 0.0;
+    for (int j = -8; j < 8; ++j)
+      for (int i = -8; i < 8; ++i) area += test::exact_fraction(i + 0.37, j + 0.81, radius);
+    EXPECT_NEAR(area, std::numbers::pi * radius * radius, 1e-12 * 100);
+  }
 }
 
 TEST(DiscFraction, IsOneInsideAndZeroOutside) {
