@@ -24,6 +24,7 @@ struct Options {
   std::vector<std::string> scene{"scene.toml"};
   RunOptions run;
   std::string record, progress = "auto";
+  std::vector<int> grid;
   int threads = 0;
   bool check = false, liggghts_vars = false;
 };
@@ -41,6 +42,9 @@ void define(CLI::App& app, Options& o) {
   app.add_option("--record", o.record, "write the exchange to this trace file");
   app.add_option("--threads", o.threads, "threads (else OMP_NUM_THREADS, else 1)")
       ->check(CLI::Range(1, 1024));
+  app.add_option("--grid", o.grid, "ranks along x, y, z (else the grid with the least surface)")
+      ->expected(3)
+      ->check(CLI::PositiveNumber);
   app.add_option("--progress", o.progress, "line, tenths, none, auto")
       ->check(CLI::IsMember({"line", "tenths", "none", "auto"}))
       ->capture_default_str();
@@ -81,17 +85,36 @@ void set_threads(int threads) {
     omp_set_num_threads(1);  // the solid program needs cores too
 }
 
+/// How the box is divided among the ranks of lbm.
+Decomposition divide(const Options& o, const Scene& scene, const Plan& plan, MPI_Comm comm) {
+  int size = 0;
+  MPI_Comm_size(comm, &size);
+  if (size == 1) return Decomposition(plan.domain);
+  if (plan.scheme != known_schemes().front())
+    throw InputError(scene.file + ": numerics.scheme",
+                     "= \"" + plan.scheme + "\" works on one rank only",
+                     "start one lbm, or take immersed_moving_boundary");
+  try {
+    const Cell3 grid =
+        o.grid.empty() ? choose_grid(plan.domain, size) : Cell3{o.grid[0], o.grid[1], o.grid[2]};
+    return {plan.domain, comm, grid};
+  } catch (const std::invalid_argument& error) {
+    throw InputError("mpirun", error.what(), "start fewer ranks of lbm, or give another --grid");
+  }
+}
+
+/// Every rank records its own exchange: FILE, FILE.1, FILE.2, …
+std::string trace_of(const std::string& file, const Decomposition& ranks) {
+  return ranks.rank() == 0 ? file : fmt::format("{}.{}", file, ranks.rank());
+}
+
 /// @param channel  set as soon as there is a partner, so that an error can be told to it
 void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol::World& world) {
   world = protocol::connect(protocol::Role::Fluid);
-  int ranks = 0;
-  MPI_Comm_size(world.local, &ranks);
   if (world.coupled()) channel = protocol::make_mpi_channel(world, protocol::Role::Fluid);
-  if (ranks > 1)
-    throw InputError("mpirun", fmt::format("{} ranks of lbm were started", ranks),
-                     "start one lbm, with --threads for more cores, and liggghts after a colon");
   const Scene scene = read_scene(o.scene);
   const Plan plan = make_plan(scene);
+  const Decomposition ranks = divide(o, scene, plan, world.local);
   if (scene.coupling && !channel)
     throw InputError(
         "mpirun", "no solid program was started beside lbm",
@@ -107,12 +130,16 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   if (!o.record.empty())
     channel = protocol::make_recording_channel(
         std::move(channel),
-        std::make_unique<protocol::TraceWriter>(o.record, "fluid", 0, world.partner_ranks));
+        std::make_unique<protocol::TraceWriter>(trace_of(o.record, ranks), "fluid", ranks.rank(),
+                                                world.partner_ranks));
   set_threads(o.threads);
-  Log log(o.run.out, progress_style(o.progress));
+  Log log = ranks.rank() == 0 ? Log(o.run.out, progress_style(o.progress)) : Log();
   log.block(describe(scene, plan));
-  log.block(describe(scene.coupling ? run_coupled(scene, plan, *channel, o.run, log)
-                                    : run_alone(scene, plan, o.run, log)));
+  if (!ranks.alone())
+    log.block(fmt::format("ranks        {} × {} × {}\n", ranks.grid()[0], ranks.grid()[1],
+                          ranks.grid()[2]));
+  log.block(describe(scene.coupling ? run_coupled(scene, plan, ranks, *channel, o.run, log)
+                                    : run_alone(scene, plan, ranks, o.run, log)));
 }
 
 }  // namespace
@@ -130,7 +157,8 @@ int main(int argc, char** argv) {
       return protocol::exit_code_of(error);
     }
 
-  MPI_Init(&argc, &argv);
+  int level = 0;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
   protocol::catch_signals();
   std::unique_ptr<protocol::Channel> channel;
   protocol::World world;

@@ -21,13 +21,13 @@ LBM = {
 }
 # Library header (prefix) -> files that may use it.
 ONLY = {
-    "mpi.h": r"protocol/(mpi_channel|program).*|liggghts_coupling/.*",
+    "mpi.h": r"protocol/(mpi_channel|program).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
     "hdf5": r"protocol/(hdf5_file|trace).*|lbm_solver/io/field_writer\.cpp",
     "lammps": r"liggghts_coupling/(host|bond)/.*",
     "atom.h": r"liggghts_coupling/(host|bond)/.*",
     "fix.h": r"liggghts_coupling/(host|bond)/.*",
     "toml++": r"lbm_solver/io/.*",
-    "Eigen": r"lbm_solver/(base/units|immersed/marked_bodies)\.h",
+    "Eigen": r"lbm_solver/(base/vec3|immersed/(body|marked_bodies))\.h",
 }
 
 

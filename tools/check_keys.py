@@ -6,7 +6,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CALL = re.compile(r'\b(?:number|number_or|numbers_or|optional_number|integer|optional_integer|flag_or|choice_or|text_or|text|'
-                  r'vector|vector_or|vectors_or_none|range|table|optional_table|tables)\(\s*"(\w+)"'
+                  r'vector|vector_or_zero|vectors_or_none|range|table|optional_table|tables)\(\s*"(\w+)"'
                   r'|\b\w+\(t, "(\w+)"')
 
 

@@ -3,6 +3,7 @@
 /// `solver/plan` turns it into numbers for the lattice.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -20,11 +21,12 @@ using protocol::Range;
 enum class SideKind { Wall, Periodic };
 
 struct BoxScene {
-  Vec2 size{0.0, 0.0};    ///< [m]
-  Vec2 origin{0.0, 0.0};  ///< lower corner [m]
-  double depth = 1.0;     ///< [m]
-  SideKind x = SideKind::Wall, y = SideKind::Wall;
-  Vec2 pressure_jump{0.0, 0.0};  ///< across periodic sides, low minus high [Pa]
+  int dimension = 2;
+  Vec3 size;           ///< [m]; z in three dimensions only
+  Vec3 origin;         ///< lower corner [m]
+  double depth = 1.0;  ///< of the layer in two dimensions [m]
+  std::array<SideKind, 3> sides{SideKind::Wall, SideKind::Wall, SideKind::Wall};
+  Vec3 pressure_jump;  ///< across periodic sides, low minus high [Pa]
 };
 
 /// Something else than no-slip at rest on a part of a side.
@@ -32,30 +34,31 @@ struct BoundaryScene {
   enum class Kind { Velocity, Pressure, Outflow };
   SideName side = SideName::Left;
   Kind kind = Kind::Velocity;
-  std::optional<double> from, to;  ///< along the side [m]; absent: its end
-  Vec2 velocity{0.0, 0.0};         ///< [m/s]; at the middle of a parabola
+  /// Along the side's axes in their order [m]; absent: its end.
+  std::array<std::optional<double>, 2> from, to;
+  Vec3 velocity;  ///< [m/s]; at the middle of a parabola
   bool parabolic = false;
   double pressure = 0.0;   ///< against the reference [Pa]
   double ramp = 0.0;       ///< time in which the value comes up [s]
   double frequency = 0.0;  ///< velocity × cos(2 pi f t) [Hz]
 };
 
-/// A solid that stays where it is: a disc (curved, with force and torque) or a block of whole
-/// cells.
+/// A solid that stays where it is: a disc or sphere (curved, with force and torque) or a block of
+/// whole cells.
 struct ObstacleScene {
-  bool disc = false;
-  bool hollow = false;  ///< a disc whose outside is solid
+  bool round = false;   ///< a disc, in three dimensions a sphere
+  bool hollow = false;  ///< round, and solid outside
   bool grain = false;   ///< one of a file of many: its load is not listed by itself
-  double spin = 0.0;    ///< of a disc [rad/s]
-  Vec2 centre{0.0, 0.0};
-  double diameter = 0.0;              ///< [m]
-  Vec2 from{0.0, 0.0}, to{0.0, 0.0};  ///< corners of a block [m]
+  Vec3 spin;            ///< of a round one [rad/s]
+  Vec3 centre;
+  double diameter = 0.0;  ///< [m]
+  Vec3 from, to;          ///< corners of a block [m]
 };
 
 struct InitialScene {
   enum class Kind { Rest, Uniform, Channel, TaylorGreen, ShearLayer };
   Kind kind = Kind::Rest;
-  Vec2 velocity{0.0, 0.0};  ///< uniform [m/s]; x component: amplitude of the others
+  Vec3 velocity;            ///< uniform [m/s]; x component: amplitude of the others
   double sharpness = 80.0;  ///< of the shear layers: kappa
   double perturbation = 0.05;
 };
@@ -63,8 +66,8 @@ struct InitialScene {
 struct FluidScene {
   double density = 1000.0;    ///< [kg/m^3]
   double viscosity = 1e-6;    ///< kinematic [m^2/s]
-  Vec2 gravity{0.0, 0.0};     ///< [m/s^2]
-  Vec2 body_force{0.0, 0.0};  ///< acceleration that drives the fluid [m/s^2]
+  Vec3 gravity;               ///< [m/s^2]
+  Vec3 body_force;            ///< acceleration that drives the fluid [m/s^2]
   double velocity_scale = 0;  ///< largest expected speed of fluid or particles [m/s]
 };
 
@@ -72,6 +75,8 @@ struct NumericsScene {
   std::optional<double> cell;                ///< [m]
   std::optional<double> cells_per_diameter;  ///< instead of `cell`: of the smallest particle
   std::optional<double> time_step;           ///< fluid step [s]; absent: chosen by rule
+  std::string lattice = "auto";              ///< D2Q9, D3Q19 or D3Q27; auto: D2Q9, D3Q19
+  bool single = false;                       ///< populations in single precision
   std::string collision = "auto";            ///< see solver/plan.h for what auto takes
   std::string solid_term = "auto";
   std::string scheme = "auto";      ///< one of known_schemes()
@@ -85,7 +90,7 @@ struct ParticleScene {
   Range diameter;                            ///< [m]
   Range density;                             ///< [kg/m^3]
   std::vector<double> hydraulic_ratio{1.0};  ///< radius that the fluid sees / radius, a type each
-  std::vector<Vec2> start;  ///< centres [m], offered to the script as particle_x …
+  std::vector<Vec3> start;  ///< centres [m], offered to the script as particle_x …
   std::optional<double> contact_stiffness;       ///< [N/m]; bounds the solid's step
   std::map<std::string, std::string> variables;  ///< further names for the script
 };
@@ -104,7 +109,7 @@ struct CouplingScene {
 struct OutputScene {
   double fields_every = 0.0;  ///< [s]; 0: none
   double probe_every = 0.0;   ///< [s]; 0: every interval
-  std::vector<Vec2> points;   ///< places where pressure and velocity are written [m]
+  std::vector<Vec3> points;   ///< places where pressure and velocity are written [m]
 };
 
 struct Scene {

@@ -3,7 +3,15 @@
 
 namespace lbm {
 
-/// A side of the box.
-enum class SideName { Left, Right, Bottom, Top };
+/// A side of the box: low and high in x, in y, in z.
+enum class SideName { Left, Right, Bottom, Top, Back, Front };
+
+/// 0, 1, 2 for x, y, z.
+constexpr int axis_of(SideName side) {
+  return static_cast<int>(side) / 2;
+}
+constexpr bool is_high(SideName side) {
+  return static_cast<int>(side) % 2 == 1;
+}
 
 }  // namespace lbm

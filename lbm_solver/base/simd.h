@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// The value type that kernels are written on: a SIMD pack, or a plain double as reference. A
-/// policy takes `V` and never asks which it is.
+/// The value types that kernels are written on: SIMD packs of doubles or floats, or a plain double
+/// as reference. A policy takes `V` and never asks which it is.
 #pragma once
 
 #include <experimental/simd>
+#include <type_traits>
+#include <utility>
 
 #if defined(__SSE2__)
 #include <pmmintrin.h>
@@ -14,6 +16,57 @@ namespace lbm {
 
 using Pack = std::experimental::native_simd<double>;
 inline constexpr int kPackWidth = static_cast<int>(Pack::size());
+
+/// A pack of floats that takes the doubles of a formula as they are written.
+class SinglePack {
+ public:
+  using Lanes = std::experimental::native_simd<float>;
+  using value_type = float;
+  using mask_type = Lanes::mask_type;
+  static constexpr int size() { return static_cast<int>(Lanes::size()); }
+
+  SinglePack() = default;
+  [[gnu::always_inline]] SinglePack(double v) : lanes_(static_cast<float>(v)) {}
+  [[gnu::always_inline]] SinglePack(const Lanes& lanes) : lanes_(lanes) {}
+  [[gnu::always_inline]] const Lanes& lanes() const { return lanes_; }
+  [[gnu::always_inline]] Lanes& lanes() { return lanes_; }
+
+  [[gnu::always_inline]] SinglePack operator-() const { return -lanes_; }
+  [[gnu::always_inline]] SinglePack& operator+=(const SinglePack& b) {
+    lanes_ += b.lanes_;
+    return *this;
+  }
+  [[gnu::always_inline]] SinglePack& operator-=(const SinglePack& b) {
+    lanes_ -= b.lanes_;
+    return *this;
+  }
+  [[gnu::always_inline]] SinglePack& operator*=(const SinglePack& b) {
+    lanes_ *= b.lanes_;
+    return *this;
+  }
+  [[gnu::always_inline]] friend SinglePack operator+(SinglePack a, const SinglePack& b) {
+    return a += b;
+  }
+  [[gnu::always_inline]] friend SinglePack operator-(SinglePack a, const SinglePack& b) {
+    return a -= b;
+  }
+  [[gnu::always_inline]] friend SinglePack operator*(SinglePack a, const SinglePack& b) {
+    return a *= b;
+  }
+  [[gnu::always_inline]] friend SinglePack operator/(const SinglePack& a, const SinglePack& b) {
+    return a.lanes_ / b.lanes_;
+  }
+  [[gnu::always_inline]] friend SinglePack sqrt(const SinglePack& a) {
+    return std::experimental::sqrt(a.lanes_);
+  }
+
+ private:
+  Lanes lanes_;
+};
+
+/// The pack that pure fluid is swept with where populations are stored as `Real`.
+template <class Real>
+using PackOf = std::conditional_t<std::is_same_v<Real, float>, SinglePack, Pack>;
 
 template <class V>
 [[gnu::always_inline]] inline V load(const double* p) {
@@ -35,28 +88,59 @@ inline Pack lane_numbers() {
   return Pack([](auto lane) { return static_cast<double>(lane); });
 }
 
-/// Access to all lanes of a pack.
+/// The SIMD lanes of a pack.
+[[gnu::always_inline]] inline Pack& lanes_of(Pack& v) {
+  return v;
+}
+[[gnu::always_inline]] inline const Pack& lanes_of(const Pack& v) {
+  return v;
+}
+[[gnu::always_inline]] inline SinglePack::Lanes& lanes_of(SinglePack& v) {
+  return v.lanes();
+}
+[[gnu::always_inline]] inline const SinglePack::Lanes& lanes_of(const SinglePack& v) {
+  return v.lanes();
+}
+
+/// Access to all lanes of a pack. Memory may be of the other precision.
+template <class V>
 struct AllLanes {
-  [[gnu::always_inline]] Pack load(const double* p) const { return lbm::load<Pack>(p); }
-  [[gnu::always_inline]] void store(double* p, const Pack& v) const { lbm::store(p, v); }
+  template <class Real>
+  [[gnu::always_inline]] V load(const Real* p) const {
+    V v;
+    lanes_of(v).copy_from(p, std::experimental::element_aligned);
+    return v;
+  }
+  template <class Real>
+  [[gnu::always_inline]] void store(Real* p, const V& v) const {
+    lanes_of(v).copy_to(p, std::experimental::element_aligned);
+  }
 };
 
 /// Access to the first lanes of a pack, for the end of a row: nothing beyond them is read or
 /// written.
+template <class V>
 class FirstLanes {
+  using Number = typename V::value_type;
+  using Lanes = std::remove_cvref_t<decltype(lanes_of(std::declval<V&>()))>;
+
  public:
-  explicit FirstLanes(int count) : mask_(lane_numbers() < Pack(static_cast<double>(count))) {}
-  [[gnu::always_inline]] Pack load(const double* p) const {
-    Pack v(0.0);
-    where(mask_, v).copy_from(p, std::experimental::element_aligned);
+  explicit FirstLanes(int count)
+      : mask_(Lanes([](auto lane) { return static_cast<Number>(lane); }) <
+              Lanes(static_cast<Number>(count))) {}
+  template <class Real>
+  [[gnu::always_inline]] V load(const Real* p) const {
+    V v(0.0);
+    where(mask_, lanes_of(v)).copy_from(p, std::experimental::element_aligned);
     return v;
   }
-  [[gnu::always_inline]] void store(double* p, const Pack& v) const {
-    where(mask_, v).copy_to(p, std::experimental::element_aligned);
+  template <class Real>
+  [[gnu::always_inline]] void store(Real* p, const V& v) const {
+    where(mask_, lanes_of(v)).copy_to(p, std::experimental::element_aligned);
   }
 
  private:
-  Pack::mask_type mask_;
+  typename V::mask_type mask_;
 };
 
 /// Denormal numbers cost up to a third of the speed and carry no physics: each thread flushes them.

@@ -4,53 +4,59 @@
 #include <cmath>
 #include <numbers>
 
-#include "lbm_solver/collision/equilibrium.h"
-
 namespace lbm {
 namespace {
 
-/// Unit step from a side into the box.
-struct Inward {
-  int x, y;
-};
-Inward inward(SideName side) {
-  switch (side) {
-    case SideName::Left:
-      return {1, 0};
-    case SideName::Right:
-      return {-1, 0};
-    case SideName::Bottom:
-      return {0, 1};
-    case SideName::Top:
-      return {0, -1};
-  }
-  return {0, 0};
-}
-
 constexpr double kCourant = 0.57735026918962576;  // c_s: cells that sound crosses in a step
 
-/// 9/2 (c·u)² - 3/2 u²
-double square_terms(int q, double ux, double uy) {
-  const double cu = D2Q9::c[q][0] * ux + D2Q9::c[q][1] * uy;
-  return 4.5 * cu * cu - 1.5 * (ux * ux + uy * uy);
+/// The axes along a side.
+std::array<int, 2> axes_along(SideName side) {
+  const int axis = axis_of(side);
+  return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
 }
 
 }  // namespace
 
-std::vector<Link> side_links(int nx, int ny, SideName side, int begin, int end, bool closed) {
-  const Inward in = inward(side);
-  const bool vertical = in.x != 0;  // the side runs along y
-  std::vector<Link> links;
-  for (int s = begin; s < end; ++s) {
-    const int x = vertical ? (side == SideName::Left ? 0 : nx - 1) : s;
-    const int y = vertical ? s : (side == SideName::Bottom ? 0 : ny - 1);
-    for (int q = 1; q < D2Q9::Q; ++q) {
-      if (D2Q9::c[q][0] * in.x + D2Q9::c[q][1] * in.y != 1) continue;
-      const int sideways = vertical ? D2Q9::c[q][1] : D2Q9::c[q][0];
-      const double at = s + 0.5 - 0.5 * sideways;
-      if (closed || (at > begin && at < end)) links.push_back({x, y, q, at});
-    }
+Opening Opening::whole(const Domain& domain, SideName side) {
+  Opening o;
+  o.side = side;
+  for (int k = 0; k < 2; ++k) {
+    const int axis = axes_along(side)[k];
+    o.end[k] = domain.cells()[axis];
+    o.closed[k] = domain.sides()[axis] == Side::Periodic;
   }
+  return o;
+}
+
+std::vector<Link> side_links(const Lattice& lattice, const Domain& domain, const Block& cells,
+                             const Opening& o) {
+  const int axis = axis_of(o.side), inward = is_high(o.side) ? -1 : 1;
+  const auto along = axes_along(o.side);
+  std::vector<Link> links;
+  std::int64_t number = 0;
+  Cell3 cell;
+  cell[axis] = is_high(o.side) ? domain.cells()[axis] - 1 : 0;
+  for (int t = o.begin[1]; t < o.end[1]; ++t)
+    for (int s = o.begin[0]; s < o.end[0]; ++s) {
+      cell[along[0]] = s;
+      cell[along[1]] = t;
+      for (int q = 1; q < lattice.Q; ++q) {
+        if (lattice.c[q][axis] != inward) continue;
+        const std::array<double, 2> at{s + 0.5 - 0.5 * lattice.c[q][along[0]],
+                                       t + 0.5 - 0.5 * lattice.c[q][along[1]]};
+        const auto inside = [&](int k) {
+          return o.closed[k] || (at[k] > o.begin[k] && at[k] < o.end[k]);
+        };
+        if (!inside(0) || !inside(1)) continue;
+        if (cells.holds(cell))
+          links.push_back(
+              {{cell[0] - cells.begin[0], cell[1] - cells.begin[1], cell[2] - cells.begin[2]},
+               q,
+               at,
+               number});
+        ++number;
+      }
+    }
   return links;
 }
 
@@ -60,52 +66,55 @@ double InTime::factor(std::int64_t step) const {
   return period_steps > 0.0 ? up * std::cos(2.0 * pi * t / period_steps) : up;
 }
 
-Patch::Inner Patch::inner(const Populations& f, const EsotericPull& stream, int x, int y) {
-  double cell[D2Q9::Q];
-  for (int q = 0; q < D2Q9::Q; ++q) cell[q] = stream.arriving(f, q, x, y);
-  const Moments<double> m = moments(cell);
-  return {m.drho, m.jx / (m.drho + 1.0), m.jy / (m.drho + 1.0)};
-}
-
-VelocityPatch::VelocityPatch(std::vector<Link> links, const Vec2& velocity, bool parabolic,
-                             int begin, int end, const InTime& in_time)
+VelocityPatch::VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,
+                             bool parabolic, const Opening& o, const InTime& in_time)
     : Patch(std::move(links)), in_time_(in_time) {
-  const double length = end - begin;
   for (const Link& link : links_) {
-    const double s = link.at - begin;
-    const double shape = parabolic ? 4.0 * s * (length - s) / (length * length) : 1.0;
-    const double cu = D2Q9::c[link.q][0] * velocity.x() + D2Q9::c[link.q][1] * velocity.y();
-    gain_.push_back(6.0 * D2Q9::w[link.q] * shape * cu);
+    double shape = 1.0;
+    for (int k = 0; k < 2; ++k) {
+      const double s = link.at[k] - o.begin[k], length = o.end[k] - o.begin[k];
+      if (parabolic && !o.closed[k]) shape *= 4.0 * s * (length - s) / (length * length);
+    }
+    gain_.push_back(6.0 * lattice.w[link.q] * shape * velocity_of(lattice, link.q).dot(velocity));
   }
 }
+
+namespace {
+
+Population arriving(Populations& f, const EsotericPull& stream, int q, const Cell3& cell) {
+  return stream.arriving(f, q, cell[0], cell[1], cell[2]);
+}
+CellMoments moments_at(const Populations& f, const EsotericPull& stream, const Cell3& cell) {
+  return cell_moments(f, stream, cell[0], cell[1], cell[2]);
+}
+
+}  // namespace
 
 void VelocityPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
   const double factor = in_time_.factor(step);
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    double& population = stream.arriving(f, links_[i].q, links_[i].x, links_[i].y);
+    const Population population = arriving(f, stream, links_[i].q, links_[i].cell);
     replace(population, population + factor * gain_[i]);
   }
 }
 
 DensityPatch::DensityPatch(std::vector<Link> links, SideName side, double drho,
                            const InTime& in_time)
-    : Patch(std::move(links)),
-      inward_x_(inward(side).x),
-      inward_y_(inward(side).y),
-      drho_(drho),
-      in_time_(in_time) {}
+    : Patch(std::move(links)), drho_(drho), in_time_(in_time) {
+  inward_[axis_of(side)] = is_high(side) ? -1 : 1;
+}
 
 void PressurePatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
   const double target = drho(step);
+  const Lattice& l = f.lattice();
   for (const Link& link : links_) {
-    const int x = link.x + inward_x_, y = link.y + inward_y_;
-    const Inner in = inner(f, stream, x, y);
+    const CellMoments in = moments_at(f, stream, inner(link));
+    const Vec3 u = in.velocity();
     const double at_cell = (2.0 * target + in.drho) / 3.0;
-    const double cu = D2Q9::c[link.q][0] * in.ux + D2Q9::c[link.q][1] * in.uy;
     const double per_density =
-        D2Q9::w[link.q] * (1.0 + 3.0 * cu + square_terms(link.q, in.ux, in.uy));
-    replace(stream.arriving(f, link.q, link.x, link.y),
-            stream.arriving(f, link.q, x, y) + (at_cell - in.drho) * per_density);
+        l.w[link.q] * (1.0 + 3.0 * velocity_of(l, link.q).dot(u) + square_terms(l, link.q, u));
+    replace(arriving(f, stream, link.q, link.cell),
+            arriving(f, stream, link.q, inner(link)) + (at_cell - in.drho) * per_density);
   }
 }
 
@@ -118,22 +127,21 @@ void OutflowPatch::apply(Populations& f, const EsotericPull& stream, std::int64_
   const double target = drho(step);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
-    const int x = link.x + inward_x_, y = link.y + inward_y_;
-    const double carried =
-        (memory_[i] + kCourant * stream.arriving(f, link.q, x, y)) / (1.0 + kCourant);
-    const double pull = relax_ * D2Q9::w[link.q] * (target - inner(f, stream, x, y).drho);
-    memory_[i] = carried + pull;
-    replace(stream.arriving(f, link.q, link.x, link.y), memory_[i]);
+    const double inside = arriving(f, stream, link.q, inner(link));
+    const double carried = (memory_[i] + kCourant * inside) / (1.0 + kCourant);
+    const double excess = target - moments_at(f, stream, inner(link)).drho;
+    memory_[i] = carried + relax_ * f.lattice().w[link.q] * excess;
+    replace(arriving(f, stream, link.q, link.cell), memory_[i]);
   }
 }
 
 void PressureJumpPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
   const double jump = drho(step);
+  const Lattice& l = f.lattice();
   for (const Link& link : links_) {
-    const Inner in = inner(f, stream, link.x + inward_x_, link.y + inward_y_);
-    double& population = stream.arriving(f, link.q, link.x, link.y);
-    replace(population,
-            population + D2Q9::w[link.q] * jump * (1.0 + square_terms(link.q, in.ux, in.uy)));
+    const Vec3 u = moments_at(f, stream, inner(link)).velocity();
+    const Population population = arriving(f, stream, link.q, link.cell);
+    replace(population, population + l.w[link.q] * jump * (1.0 + square_terms(l, link.q, u)));
   }
 }
 

@@ -6,17 +6,35 @@
 #include <vector>
 
 #include "lbm_solver/base/side.h"
-#include "lbm_solver/base/units.h"
-#include "lbm_solver/field/esoteric_pull.h"
+#include "lbm_solver/field/cell_pass.h"
 
 namespace lbm {
 
-/// A population that enters cell (x, y) along q through a side. After a sweep it holds the cell's
-/// own outgoing population, bounced back half-way; a patch replaces it.
+/// A population that enters a cell along q through a side. After a sweep it holds the cell's own
+/// outgoing population, bounced back half-way; a patch replaces it.
 struct Link {
-  int x, y, q;
-  double at;  ///< where the link crosses the side, in cells along it
+  Cell3 cell;  ///< of the rank
+  int q;
+  std::array<double, 2> at;  ///< where it crosses the side, in cells of the box along its axes
+  std::int64_t number;       ///< among all links of the patch, on all ranks
 };
+
+/// A part of a side: cells [begin, end) of the box along the other two axes, in their order (x, y,
+/// z; in two dimensions the second spans one cell).
+struct Opening {
+  SideName side = SideName::Left;
+  std::array<int, 2> begin{0, 0}, end{0, 1};
+  /// The side's neighbours along that axis are periodic and the opening spans it: it has no ends.
+  std::array<bool, 2> closed{false, true};
+
+  /// The whole of a side.
+  static Opening whole(const Domain& domain, SideName side);
+};
+
+/// Links of the rank's cells. A diagonal link that crosses the side exactly at an end of the
+/// opening belongs to the wall beside it: edges of slots and corners of the box are no-slip.
+std::vector<Link> side_links(const Lattice& lattice, const Domain& domain, const Block& cells,
+                             const Opening& opening);
 
 /// What happens on a part of a side instead of no-slip at rest. Acts on a list of links after each
 /// sweep.
@@ -28,23 +46,18 @@ class Patch {
   /// @param step  number of the step just made, for boundaries that change in time
   virtual void apply(Populations& f, const EsotericPull& stream, std::int64_t step) = 0;
 
-  /// Mass that has entered through the patch since the start, lattice units: with it the mass of an
-  /// open box is accounted for to round-off.
+  /// Mass that has entered through this rank's links since the start, lattice units: with it the
+  /// mass of an open box is accounted for to round-off.
   double mass_in() const { return mass_in_; }
 
-  /// State that a checkpoint must keep besides the mass.
+  /// State of each link that a checkpoint must keep besides the mass; empty: none.
   virtual std::vector<double>& memory() { return no_memory_; }
+  const std::vector<Link>& links() const { return links_; }
   void restore_mass(double mass_in) { mass_in_ = mass_in; }
 
  protected:
-  /// Velocity and density deviation of the next cell inward of a link's.
-  struct Inner {
-    double drho, ux, uy;
-  };
-  static Inner inner(const Populations& f, const EsotericPull& stream, int x, int y);
-
   /// Writes a new value and books its mass.
-  void replace(double& population, double value) {
+  void replace(const Population& population, double value) {
     mass_in_ += value - population;
     population = value;
   }
@@ -55,12 +68,6 @@ class Patch {
  private:
   std::vector<double> no_memory_;
 };
-
-/// Links through the cells [begin, end) of a side. A diagonal link that crosses the side exactly at
-/// an end of the patch belongs to the wall beside it: edges of slots and corners of the box are
-/// no-slip.
-/// @param closed  the side's neighbours are periodic and the patch spans the side: it has no ends
-std::vector<Link> side_links(int nx, int ny, SideName side, int begin, int end, bool closed);
 
 /// How a boundary value depends on time: it comes up smoothly, ½(1 - cos), and may oscillate.
 struct InTime {
@@ -73,9 +80,11 @@ struct InTime {
 class VelocityPatch final : public Patch {
  public:
   /// @param velocity    at the middle, lattice units
-  /// @param parabolic   velocity × 4 s (L - s)/L² along the patch, else uniform
-  VelocityPatch(std::vector<Link> links, const Vec2& velocity, bool parabolic, int begin, int end,
-                const InTime& in_time);
+  /// @param parabolic   velocity × 4 s (L - s)/L² along each axis of the opening that is not
+  /// closed,
+  ///                    else uniform
+  VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,
+                bool parabolic, const Opening& opening, const InTime& in_time);
   void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
 
  private:
@@ -91,9 +100,13 @@ class DensityPatch : public Patch {
   DensityPatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time);
   double drho(std::int64_t step) const { return drho_ * in_time_.factor(step); }
 
-  int inward_x_, inward_y_;
+  /// The next cell inward of a link's.
+  Cell3 inner(const Link& link) const {
+    return {link.cell[0] + inward_[0], link.cell[1] + inward_[1], link.cell[2] + inward_[2]};
+  }
 
  private:
+  Cell3 inward_{0, 0, 0};
   double drho_;
   InTime in_time_;
 };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+/// Moments and equilibrium of a cell, for any velocity set L and value type V.
 #pragma once
 
 #include "lbm_solver/base/unroll.h"
-#include "lbm_solver/lattice/d2q9.h"
+#include "lbm_solver/lattice/lattice.h"
 
 namespace lbm {
 
@@ -12,60 +13,122 @@ struct Halves {
   V even, odd;
 };
 
+/// A vector with one component an axis of the lattice.
+template <class L, class V>
+struct Vector {
+  V at[L::D];
+  [[gnu::always_inline]] V& operator[](int a) { return at[a]; }
+  [[gnu::always_inline]] const V& operator[](int a) const { return at[a]; }
+};
+
+/// c_i · v for the first direction i of a pair, whose first part that is not zero is +1.
+template <class L, int i, class V>
+[[gnu::always_inline]] inline V along(const Vector<L, V>& v) {
+  constexpr int first = L::c[i][0] != 0 ? 0 : L::c[i][1] != 0 ? 1 : 2;
+  V sum = v[first];
+  unroll<L::D>([&](auto a) __attribute__((always_inline)) {
+    if constexpr (a > first && L::c[i][a] == 1) sum += v[a];
+    if constexpr (a > first && L::c[i][a] == -1) sum -= v[a];
+  });
+  return sum;
+}
+
+template <class L, class V>
+[[gnu::always_inline]] inline V dot(const Vector<L, V>& a, const Vector<L, V>& b) {
+  V sum = a[0] * b[0];
+  unroll<L::D - 1>([&](auto k) __attribute__((always_inline)) { sum += a[k + 1] * b[k + 1]; });
+  return sum;
+}
+
+/// A symmetric second-order tensor.
+template <class L, class V>
+struct Symmetric {
+  static constexpr int size = L::D * (L::D + 1) / 2;
+  V at[size];  ///< xx yy (zz) xy (xz yz)
+
+  static constexpr int place(int a, int b) { return a == b ? a : L::D + a + b - 1; }
+  template <int a, int b>
+  [[gnu::always_inline]] V& get() {
+    return at[place(a, b)];
+  }
+  template <int a, int b>
+  [[gnu::always_inline]] const V& get() const {
+    return at[place(a, b)];
+  }
+  [[gnu::always_inline]] V trace() const {
+    V sum = at[0];
+    unroll<L::D - 1>([&](auto a) __attribute__((always_inline)) { sum += at[a + 1]; });
+    return sum;
+  }
+  /// Σ_ab c_ia c_ib T_ab
+  template <int i>
+  [[gnu::always_inline]] V along() const {
+    constexpr int first = L::c[i][0] != 0 ? 0 : L::c[i][1] != 0 ? 1 : 2;
+    V sum = at[first];
+    each_pair([&](auto a, auto b) __attribute__((always_inline)) {
+      constexpr int c = L::c[i][a] * L::c[i][b];
+      if constexpr (a == b && a > first && c != 0) sum += at[a];
+      if constexpr (a != b && c != 0) sum += V(2.0 * c) * at[place(a, b)];
+    });
+    return sum;
+  }
+  /// Calls f(a, b) for a ≤ b: the diagonal first.
+  template <class F>
+  [[gnu::always_inline]] static void each_pair(F&& f) {
+    unroll<L::D>([&](auto a) __attribute__((always_inline)) { f(a, a); });
+    unroll<L::D>([&](auto a) __attribute__((always_inline)) {
+      unroll<L::D>([&](auto b) __attribute__((always_inline)) {
+        if constexpr (a < b) f(a, b);
+      });
+    });
+  }
+};
+
 /// Density and momentum of a cell, from populations stored as deviations from rest.
-template <class V>
+template <class L, class V>
 struct Moments {
-  V drho;    ///< rho - 1
-  V jx, jy;  ///< Σ c_i f_i
+  V drho;          ///< rho - 1
+  Vector<L, V> j;  ///< Σ c_i f_i
 };
 
 /// rho = Σ f_i,  j = Σ c_i f_i
-template <class V>
-[[gnu::always_inline]] inline Moments<V> moments(const V (&f)[D2Q9::Q]) {
-  Moments<V> m{f[0], V(0.0), V(0.0)};
-  unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
+template <class L, class V>
+[[gnu::always_inline]] inline Moments<L, V> moments(const V (&f)[L::Q]) {
+  Moments<L, V> m{f[0], {}};
+  unroll<L::D>([&](auto a) __attribute__((always_inline)) { m.j[a] = V(0.0); });
+  unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
     constexpr int i = 2 * p + 1;
     const V difference = f[i] - f[i + 1];
     m.drho += f[i] + f[i + 1];
-    if constexpr (D2Q9::c[i][0] == 1) m.jx += difference;
-    if constexpr (D2Q9::c[i][1] == 1) m.jy += difference;
-    if constexpr (D2Q9::c[i][1] == -1) m.jy -= difference;
+    unroll<L::D>([&](auto a) __attribute__((always_inline)) {
+      if constexpr (L::c[i][a] == 1) m.j[a] += difference;
+      if constexpr (L::c[i][a] == -1) m.j[a] -= difference;
+    });
   });
   return m;
-}
-
-/// c_i · (x, y) for the first direction i of a pair.
-template <int i, class V>
-[[gnu::always_inline]] inline V along(const V& x, const V& y) {
-  if constexpr (D2Q9::c[i][0] == 0)
-    return y;
-  else if constexpr (D2Q9::c[i][1] == 0)
-    return x;
-  else if constexpr (D2Q9::c[i][1] == 1)
-    return x + y;
-  else
-    return x - y;
 }
 
 /// Second-order equilibrium, split into the halves of each opposite pair:
 ///   f_i^eq - w_i = even + odd,  f_{i+1}^eq - w_i = even - odd,
 ///   even = w_i (drho + rho (9/2 (c_i·u)² - 3/2 u²)),  odd = 3 w_i rho c_i·u
-template <class V>
+template <class L, class V>
 class Equilibrium {
  public:
-  [[gnu::always_inline]] Equilibrium(V drho, V ux, V uy)
-      : rho_(drho + V(1.0)), ux_(ux), uy_(uy), base_(drho - V(1.5) * rho_ * (ux * ux + uy * uy)) {}
+  [[gnu::always_inline]] Equilibrium(V drho, const Vector<L, V>& u)
+      : rho_(drho + V(1.0)), u_(u), base_(drho - V(1.5) * rho_ * dot<L>(u, u)) {}
 
-  [[gnu::always_inline]] V rest() const { return V(D2Q9::w[0]) * base_; }
+  [[gnu::always_inline]] V rest() const { return V(L::w[0]) * base_; }
 
   template <int i>
   [[gnu::always_inline]] Halves<V> pair() const {
-    const V cu = along<i>(ux_, uy_), momentum = rho_ * cu;
-    return {V(D2Q9::w[i]) * (base_ + V(4.5) * cu * momentum), V(3.0 * D2Q9::w[i]) * momentum};
+    const V cu = along<L, i>(u_), momentum = rho_ * cu;
+    return {V(L::w[i]) * (base_ + V(4.5) * cu * momentum), V(3.0 * L::w[i]) * momentum};
   }
 
  private:
-  V rho_, ux_, uy_, base_;
+  V rho_;
+  Vector<L, V> u_;
+  V base_;
 };
 
 }  // namespace lbm

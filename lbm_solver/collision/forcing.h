@@ -8,16 +8,14 @@
 namespace lbm {
 
 /// No body force: the velocity is j/rho and nothing is added.
+template <class L>
 class NoForce {
  public:
   static constexpr bool on = false;
   explicit NoForce(const CollisionParameters&) {}
+  /// rho u
   template <class V>
-  [[gnu::always_inline]] V momentum_x(const V& j) const {
-    return j;
-  }
-  template <class V>
-  [[gnu::always_inline]] V momentum_y(const V& j) const {
+  [[gnu::always_inline]] const Vector<L, V>& momentum(const Vector<L, V>& j) const {
     return j;
   }
 };
@@ -25,68 +23,85 @@ class NoForce {
 /// Uniform body force [GuoZhengShi2002]. The velocity takes half of it, rho u = j + F/2, and the
 /// populations the source
 ///   S_i = w_i (3 c_i·F + 9 (c_i·u)(c_i·F) - 3 u·F),   Σ S_i = 0, Σ c_i S_i = F
+template <class L>
 class GuoForce {
  public:
   static constexpr bool on = true;
-  explicit GuoForce(const CollisionParameters& p) : x_(p.force_x), y_(p.force_y) {}
-  double x() const { return x_; }
-  double y() const { return y_; }
+  explicit GuoForce(const CollisionParameters& p) : at_{p.force_x, p.force_y, p.force_z} {}
+  double operator[](int a) const { return at_[a]; }
+  /// The force on a cell, as a vector of V.
+  template <class V>
+  [[gnu::always_inline]] Vector<L, V> vector() const {
+    Vector<L, V> f;
+    unroll<L::D>([&](auto a) __attribute__((always_inline)) { f[a] = V(at_[a]); });
+    return f;
+  }
 
   template <class V>
-  [[gnu::always_inline]] V momentum_x(const V& j) const {
-    return j + V(0.5 * x_);
+  [[gnu::always_inline]] Vector<L, V> momentum(Vector<L, V> j) const {
+    unroll<L::D>([&](auto a) __attribute__((always_inline)) { j[a] += V(0.5 * at_[a]); });
+    return j;
   }
   template <class V>
-  [[gnu::always_inline]] V momentum_y(const V& j) const {
-    return j + V(0.5 * y_);
-  }
-  template <class V>
-  [[gnu::always_inline]] V rest(const V& ux, const V& uy) const {
-    return V(-3.0 * D2Q9::w[0]) * work(ux, uy);
+  [[gnu::always_inline]] V rest(const Vector<L, V>& u) const {
+    return V(-3.0 * L::w[0]) * dot<L>(vector<V>(), u);
   }
   template <int i, class V>
-  [[gnu::always_inline]] Halves<V> pair(const V& ux, const V& uy) const {
-    const V cf = along<i>(V(x_), V(y_)), cu = along<i>(ux, uy);
-    return {V(D2Q9::w[i]) * (V(9.0) * cu * cf - V(3.0) * work(ux, uy)), V(3.0 * D2Q9::w[i]) * cf};
+  [[gnu::always_inline]] Halves<V> pair(const Vector<L, V>& u) const {
+    const V cf = along<L, i>(vector<V>()), cu = along<L, i>(u), work = dot<L>(vector<V>(), u);
+    return {V(L::w[i]) * (V(9.0) * cu * cf - V(3.0) * work), V(3.0 * L::w[i]) * cf};
   }
   /// ½(F_a u_b + u_a F_b), the force's part of Q_ab.
   template <class V>
-  [[gnu::always_inline]] void add_to(NonEquilibrium<V>& q, const V& ux, const V& uy) const {
-    q.xx += V(x_) * ux;
-    q.yy += V(y_) * uy;
-    q.xy += V(0.5) * (V(x_) * uy + V(y_) * ux);
+  [[gnu::always_inline]] void add_to(Symmetric<L, V>& q, const Vector<L, V>& u) const {
+    Symmetric<L, V>::each_pair([&](auto a, auto b) __attribute__((always_inline)) {
+      q.template get<a, b>() += V(0.5) * (V(at_[a]) * u[b] + V(at_[b]) * u[a]);
+    });
   }
 
  private:
-  template <class V>
-  [[gnu::always_inline]] V work(const V& ux, const V& uy) const {
-    return V(x_) * ux + V(y_) * uy;
-  }
-  double x_, y_;
+  double at_[3];
 };
 
-/// Q_ab of a cell, from its second moments: Σ c_a c_b f - rho/3 δ_ab - rho u_a u_b, plus the
-/// force's part.
-template <class Force, class V>
-[[gnu::always_inline]] inline NonEquilibrium<V> non_equilibrium(const V (&f)[D2Q9::Q],
-                                                                const V& drho, const V& ux,
-                                                                const V& uy, const Force& force) {
-  // pairs: (1,2) along x, (3,4) along y, (5,6) the diagonal, (7,8) the other one
-  const V a = f[1] + f[2], b = f[3] + f[4], c = f[5] + f[6], d = f[7] + f[8];
+/// Velocity of a cell, half a body force included.
+template <class L, class V, class Force>
+[[gnu::always_inline]] inline Vector<L, V> velocity(const Moments<L, V>& m, const Force& force) {
+  const V inverse = V(1.0) / (m.drho + V(1.0));
+  Vector<L, V> u = force.momentum(m.j);
+  unroll<L::D>([&](auto a) __attribute__((always_inline)) { u[a] *= inverse; });
+  return u;
+}
+
+/// Second moments of the non-equilibrium populations, Q_ab = Σ c_a c_b f - rho/3 δ_ab - rho u_a
+/// u_b, plus the force's part ½(F_a u_b + u_a F_b) where there is one.
+template <class L, class Force, class V>
+[[gnu::always_inline]] inline Symmetric<L, V> non_equilibrium(const V (&f)[L::Q], const V& drho,
+                                                              const Vector<L, V>& u,
+                                                              const Force& force) {
+  Symmetric<L, V> q;
   const V rho = drho + V(1.0), third = V(1.0 / 3.0) * drho;
-  NonEquilibrium<V> q{a + c + d - third - rho * ux * ux, c - d - rho * ux * uy,
-                      b + c + d - third - rho * uy * uy};
-  if constexpr (Force::on) force.add_to(q, ux, uy);
+  Symmetric<L, V>::each_pair([&](auto a, auto b) __attribute__((always_inline)) {
+    q.template get<a, b>() = a == b ? -third - rho * u[a] * u[a] : -rho * u[a] * u[b];
+  });
+  unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
+    constexpr int i = 2 * p + 1;
+    const V sum = f[i] + f[i + 1];
+    Symmetric<L, V>::each_pair([&](auto a, auto b) __attribute__((always_inline)) {
+      constexpr int c = L::c[i][a] * L::c[i][b];
+      if constexpr (c == 1) q.template get<a, b>() += sum;
+      if constexpr (c == -1) q.template get<a, b>() -= sum;
+    });
+  });
+  if constexpr (Force::on) force.add_to(q, u);
   return q;
 }
 
 /// Relaxation time of a cell's viscosity with its eddy viscosity.
-template <class Turbulence, class Force, class V>
-[[gnu::always_inline]] inline V turbulent_tau(const V (&f)[D2Q9::Q], const Moments<V>& m,
+template <class L, class Turbulence, class Force, class V>
+[[gnu::always_inline]] inline V turbulent_tau(const V (&f)[L::Q], const Moments<L, V>& m,
                                               const Turbulence& turbulence, const Force& force) {
-  const V rho = m.drho + V(1.0), inverse = V(1.0) / rho;
-  const V ux = force.momentum_x(m.jx) * inverse, uy = force.momentum_y(m.jy) * inverse;
-  return turbulence.tau(non_equilibrium(f, m.drho, ux, uy, force), rho);
+  return turbulence.tau(non_equilibrium<L>(f, m.drho, velocity<L>(m, force), force),
+                        m.drho + V(1.0));
 }
 
 }  // namespace lbm

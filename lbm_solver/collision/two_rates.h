@@ -30,9 +30,10 @@ struct MagicRate {
 /// Relaxes the even and odd halves of the populations:
 ///   f± <- f± + ω± (f±^eq - f±) + (1 - ω±/2) S±,   ω⁺ = 1/τ, ω⁻ by the odd rule
 /// @param f  populations [q] that arrived, as deviations from rest; overwritten
-template <class OddRule, class Turbulence, class Force>
+template <class L, class OddRule, class Turbulence, class Force>
 class TwoRates {
  public:
+  using Set = L;
   explicit TwoRates(const CollisionParameters& p)
       : odd_rule_(p),
         turbulence_(p),
@@ -48,32 +49,30 @@ class TwoRates {
   static constexpr bool turbulent = Turbulence::on, forced = Force::on;
   const Force& force() const { return force_; }
   template <class V>
-  [[gnu::always_inline]] V relaxation_time(const V (&f)[D2Q9::Q], const Moments<V>& m) const {
-    return turbulent_tau(f, m, turbulence_, force_);
+  [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m) const {
+    return turbulent_tau<L>(f, m, turbulence_, force_);
   }
 
   template <class V>
-  [[gnu::always_inline]] void operator()(V (&f)[D2Q9::Q]) const {
-    const Moments<V> m = moments(f);
-    const V inverse = V(1.0) / (m.drho + V(1.0));
-    const V ux = force_.momentum_x(m.jx) * inverse, uy = force_.momentum_y(m.jy) * inverse;
+  [[gnu::always_inline]] void operator()(V (&f)[L::Q]) const {
+    const Moments<L, V> m = moments<L>(f);
+    const Vector<L, V> u = velocity<L>(m, force_);
     V even_rate(even_rate_), odd_rate(odd_rate_);
     if constexpr (Turbulence::on) {
-      const V rho = m.drho + V(1.0);
-      const V tau = turbulence_.tau(non_equilibrium(f, m.drho, ux, uy, force_), rho);
+      const V tau = turbulence_.tau(non_equilibrium<L>(f, m.drho, u, force_), m.drho + V(1.0));
       even_rate = V(1.0) / tau;
       odd_rate = V(1.0) / odd_rule_.odd_tau(tau);
     }
-    const Equilibrium<V> eq(m.drho, ux, uy);
+    const Equilibrium<L, V> eq(m.drho, u);
     f[0] += even_rate * (eq.rest() - f[0]);
-    if constexpr (Force::on) f[0] += (V(1.0) - V(0.5) * even_rate) * force_.rest(ux, uy);
-    unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
+    if constexpr (Force::on) f[0] += (V(1.0) - V(0.5) * even_rate) * force_.rest(u);
+    unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
       constexpr int i = 2 * p + 1;
       const auto e = eq.template pair<i>();
       const V even = V(0.5) * (f[i] + f[i + 1]), odd = V(0.5) * (f[i] - f[i + 1]);
       V even_gain = even_rate * (e.even - even), odd_gain = odd_rate * (e.odd - odd);
       if constexpr (Force::on) {
-        const auto s = force_.template pair<i>(ux, uy);
+        const auto s = force_.template pair<i>(u);
         even_gain += (V(1.0) - V(0.5) * even_rate) * s.even;
         odd_gain += (V(1.0) - V(0.5) * odd_rate) * s.odd;
       }

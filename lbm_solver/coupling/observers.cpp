@@ -36,10 +36,11 @@ double PartClock::total() const {
   return std::chrono::duration<double>(last_ - start_).count();
 }
 
-Observers::Observers(const Scene& scene, const Plan& plan, const std::string& folder, Log& log,
-                     std::int64_t first)
+Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+                     const std::string& folder, Log& log, std::int64_t first)
     : scene_(scene),
       plan_(plan),
+      ranks_(ranks),
       log_(log),
       guard_every_(std::max<std::int64_t>(1, kGuardSteps / plan.fluid_steps)),
       start_(std::chrono::steady_clock::now()),
@@ -47,16 +48,20 @@ Observers::Observers(const Scene& scene, const Plan& plan, const std::string& fo
   const double keep =
       (static_cast<double>(first) - 0.5) * plan.interval();  // lines before this time
   intervals_done_ = first;
-  if (scene.coupling) probes_.emplace(folder, keep);
-  if (!scene.output.points.empty())
-    points_.emplace(folder + "/points.csv", "time,x,y,pressure,ux,uy", keep);
-  if (!obstacle_discs(scene, plan).empty()) obstacles_.emplace(scene, plan, folder, keep);
+  draws_ = scene.output.fields_every > 0.0;
+  const bool flat = scene.box.dimension == 2;
+  if (!obstacle_bodies(scene, plan).empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
   if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);
-  if (scene.output.fields_every > 0.0) fields_.emplace(folder, plan.units, keep);
+  if (ranks.rank() != 0) return;
+  if (scene.coupling) probes_.emplace(folder, scene.box.dimension, keep);
+  if (!scene.output.points.empty())
+    points_.emplace(folder + "/points.csv",
+                    flat ? "time,x,y,pressure,ux,uy" : "time,x,y,z,pressure,ux,uy,uz", keep);
+  if (draws_) fields_.emplace(folder, plan.units, scene.box.dimension, keep);
 }
 
 bool Observers::draws_at(std::int64_t interval) const {
-  return fields_ &&
+  return draws_ &&
          static_cast<double>(interval) * plan_.interval() >= next_field_ - 1e-9 * plan_.interval();
 }
 
@@ -66,8 +71,8 @@ std::int64_t Observers::next_look(std::int64_t interval) const {
     return static_cast<std::int64_t>(std::ceil(time / plan_.interval() - 1e-9));
   };
   std::int64_t next = (interval + guard_every_ - 1) / guard_every_ * guard_every_;
-  if (points_) next = std::min(next, due(next_probe_));
-  if (fields_) next = std::min(next, due(next_field_));
+  if (!scene_.output.points.empty()) next = std::min(next, due(next_probe_));
+  if (draws_) next = std::min(next, due(next_field_));
   return std::max(interval, next);
 }
 
@@ -95,7 +100,7 @@ void Observers::at_end(std::int64_t interval, Fluid& fluid, const Particles* par
   const double time = static_cast<double>(interval) * plan_.interval();
   guard(interval, fluid, particles);
   write_probes(time, fluid, particles, true);
-  if (fields_) write_fields(time, fluid, particles);
+  if (draws_) write_fields(time, fluid, particles);
 }
 
 std::vector<double> Observers::state() const {
@@ -118,33 +123,43 @@ void Observers::restore(const std::vector<double>& s) {
 
 void Observers::write_probes(double time, const Fluid& fluid, const Particles* particles,
                              bool last) {
-  if (probes_ && particles)
-    probes_->write(time, particles->states(),
-                   last ? std::span<const protocol::Load>{} : particles->last_loads());
-  if (points_) {
-    for (const Vec2& x : scene_.output.points) {
-      const auto c = fluid.at(plan_.units.to_lattice_position(x));
-      points_->row({time, x.x(), x.y(), (c.rho - 1.0) * plan_.units.pressure(),
-                    c.u.x() * plan_.units.velocity(), c.u.y() * plan_.units.velocity()});
-    }
-    points_->flush();
+  if (particles) {
+    const Particles::Everything all = particles->gather();
+    if (probes_)
+      probes_->write(time, all.particles,
+                     last ? std::span<const protocol::Load>{} : std::span(all.loads));
   }
+  for (const Vec3& x : scene_.output.points) {
+    const auto c = fluid.at(plan_.units.to_lattice_position(x));
+    const double pressure = (c.rho - 1.0) * plan_.units.pressure();
+    const Vec3 u = c.u * plan_.units.velocity();
+    if (!points_) continue;
+    if (scene_.box.dimension == 2)
+      points_->row({time, x.x(), x.y(), pressure, u.x(), u.y()});
+    else
+      points_->row({time, x.x(), x.y(), x.z(), pressure, u.x(), u.y(), u.z()});
+  }
+  if (points_) points_->flush();
   if (obstacles_) obstacles_->write(time);
 }
 
 void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* particles) {
   const auto e = fluid.extremes();
-  const Vec2 place = plan_.units.origin + plan_.units.dx * Vec2(e.x + 0.5, e.y + 0.5);
+  const bool flat = scene_.box.dimension == 2;
+  const Vec3 cell(e.cell[0] + 0.5, e.cell[1] + 0.5, e.cell[2] + 0.5);
+  const Vec3 x = plan_.units.origin + plan_.units.dx * cell;
+  const std::string place = flat ? fmt::format("({:.6g}, {:.6g}) m", x.x(), x.y())
+                                 : fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x.x(), x.y(), x.z());
   if (!e.finite)
     throw NumericsError(fmt::format(
-        "interval {}: the fluid is not finite at ({:.6g}, {:.6g}) m; the step was too long or the "
-        "cell too coarse for this flow (Re_h = {:.3g})",
-        interval, place.x(), place.y(), plan_.reynolds_cell));
-  const double particle = particles ? particles->max_speed() / plan_.units.velocity() : 0.0;
+        "interval {}: the fluid is not finite at {}; the step was too long or the cell too coarse "
+        "for this flow (Re_h = {:.3g})",
+        interval, place, plan_.reynolds_cell));
+  const double particle =
+      ranks_.max(particles ? particles->max_speed() / plan_.units.velocity() : 0.0);
   last_speed_ = e.max_speed;
   max_speed_ = std::max(max_speed_, e.max_speed);
-  mass_excess_ = e.mass_excess;
-  for (const auto& patch : fluid.patches()) mass_excess_ -= patch->mass_in();
+  mass_excess_ = e.mass_excess - fluid.mass_in();
   if (steady_) steady_->look(fluid);
   if (std::max(e.max_speed, particle) <= kStopSpeed) return;
   const bool by_fluid = e.max_speed > particle;
@@ -152,56 +167,77 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* part
   throw NumericsError(fmt::format(
       "interval {}: {} {}moves at {:.4g} m/s = {:.3g} C, above {}; raise fluid.velocity_scale "
       "(now {} m/s)",
-      interval, by_fluid ? "the fluid" : "a particle",
-      by_fluid ? fmt::format("at ({:.6g}, {:.6g}) m ", place.x(), place.y()) : "",
+      interval, by_fluid ? "the fluid" : "a particle", by_fluid ? "at " + place + " " : "",
       speed * plan_.units.velocity(), speed, kStopSpeed, scene_.fluid.velocity_scale));
 }
 
 /// Lines between the centres of bonded particles; across a periodic side there is none.
-void Observers::add_bonds(const Particles& particles, FieldFrame& frame) const {
+void Observers::add_bonds(const std::vector<protocol::Particle>& particles,
+                          const protocol::BondReport& bonds, FieldFrame& frame) const {
   std::unordered_map<std::int64_t, const protocol::State*> by_id;
-  for (const auto& p : particles.states()) by_id.emplace(p.state.id, &p.state);
-  const Vec2 half = 0.5 * scene_.box.size;
-  for (const protocol::Bond& bond : particles.bonds()->list) {
+  for (const auto& p : particles) by_id.emplace(p.state.id, &p.state);
+  const int d = scene_.box.dimension;
+  for (const protocol::Bond& bond : bonds.list) {
     const auto a = by_id.find(bond.first), b = by_id.find(bond.second);
     if (a == by_id.end() || b == by_id.end()) continue;  // one has left the box
     const auto &x = a->second->x, &y = b->second->x;
-    if (std::abs(x[0] - y[0]) > half.x() || std::abs(x[1] - y[1]) > half.y()) continue;
-    frame.bond_ends.insert(frame.bond_ends.end(), {x[0], x[1], y[0], y[1]});
+    bool across = false;
+    for (int k = 0; k < d; ++k) across = across || std::abs(x[k] - y[k]) > 0.5 * scene_.box.size[k];
+    if (across) continue;
+    for (const auto* end : {&x, &y})
+      frame.bond_ends.insert(frame.bond_ends.end(), end->begin(), end->begin() + d);
     frame.bond_state.push_back(static_cast<double>(bond.state));
   }
 }
 
-void Observers::write_fields(double time, Fluid& fluid, const Particles* particles) {
-  const int nx = plan_.domain.nx, ny = plan_.domain.ny;
-  FieldFrame frame{time, nx, ny, {}, {}, {}, {}, {}, {}};
-  std::vector<double> rho(nx), ux(nx), uy(nx);
-  for (int y = 0; y < ny; ++y) {
-    fluid.row(y, rho, ux, uy);
-    for (int x = 0; x < nx; ++x) {
-      frame.pressure.push_back(static_cast<float>((rho[x] - 1.0) * plan_.units.pressure()));
-      frame.velocity.push_back(static_cast<float>(ux[x] * plan_.units.velocity()));
-      frame.velocity.push_back(static_cast<float>(uy[x] * plan_.units.velocity()));
-      frame.velocity.push_back(0.0F);
-      if (fluid.has_solids())
-        frame.solid_fraction.push_back(static_cast<float>(fluid.solid_fraction(x, y)));
-    }
+void Observers::add_particles(const Particles& particles, FieldFrame& frame) const {
+  const Particles::Everything all = particles.gather();
+  for (const auto& [s, shape] : all.particles) {
+    auto& to = frame.particles;
+    const auto id = static_cast<double>(s.id), type = static_cast<double>(shape.type);
+    if (frame.nz == 1)
+      to.insert(to.end(), {id, s.x[0], s.x[1], shape.radius, s.v[0], s.v[1], s.omega[2], type});
+    else
+      to.insert(to.end(), {id, s.x[0], s.x[1], s.x[2], shape.radius, s.v[0], s.v[1], s.v[2],
+                           s.omega[0], s.omega[1], s.omega[2], type});
   }
-  if (particles)
-    for (const auto& [s, shape] : particles->states())
-      frame.particles.insert(frame.particles.end(),
-                             {static_cast<double>(s.id), s.x[0], s.x[1], shape.radius, s.v[0],
-                              s.v[1], s.omega[2], static_cast<double>(shape.type)});
-  if (particles && particles->bonds()) add_bonds(*particles, frame);
-  fields_->write(frame);
+  if (particles.bonds()) add_bonds(all.particles, *particles.bonds(), frame);
+}
+
+void Observers::write_fields(double time, Fluid& fluid, const Particles* particles) {
+  const Cell3& n = fluid.cells().size;
+  FieldFrame frame;
+  frame.time = time;
+  frame.nx = plan_.domain.nx;
+  frame.ny = plan_.domain.ny;
+  frame.nz = plan_.domain.nz;
+  const auto nx = static_cast<std::size_t>(n[0]);
+  std::vector<double> rho(nx), u[3];
+  for (auto& component : u) component.assign(nx, 0.0);
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y) {
+      fluid.row(y, z, rho, {u[0], u[1], u[2]});
+      for (int x = 0; x < n[0]; ++x) {
+        frame.pressure.push_back(static_cast<float>((rho[x] - 1.0) * plan_.units.pressure()));
+        for (const auto& component : u)
+          frame.velocity.push_back(static_cast<float>(component[x] * plan_.units.velocity()));
+        if (fluid.has_solids())
+          frame.solid_fraction.push_back(static_cast<float>(fluid.solid_fraction(x, y, z)));
+      }
+    }
+  frame.pressure = ranks_.gather(std::move(frame.pressure), 1);
+  frame.velocity = ranks_.gather(std::move(frame.velocity), 3);
+  if (fluid.has_solids()) frame.solid_fraction = ranks_.gather(std::move(frame.solid_fraction), 1);
+  if (particles) add_particles(*particles, frame);
+  if (fields_) fields_->write(frame);
 }
 
 void Observers::report_progress(std::int64_t interval, const Particles* particles) {
   last_progress_ = std::chrono::steady_clock::now();
   const double wall = seconds_since(start_);
   const double done = static_cast<double>(intervals_done_) / static_cast<double>(plan_.intervals);
-  const double updates =
-      static_cast<double>(intervals_done_) * plan_.fluid_steps * plan_.domain.nx * plan_.domain.ny;
+  const double updates = static_cast<double>(intervals_done_) * plan_.fluid_steps *
+                         plan_.domain.nx * plan_.domain.ny * plan_.domain.nz;
   log_.progress(
       done, fmt::format("{:>9} | progress | t = {:.4g} s, {:3.0f} %, {:.0f} million "
                         "updates/s, {} left, Ma {:.3f}, max |u| {:.4g} m/s",
@@ -216,7 +252,7 @@ void Observers::report_progress(std::int64_t interval, const Particles* particle
 
 Summary Observers::summary(double wall_seconds) const {
   Summary s;
-  const long cells = static_cast<long>(plan_.domain.nx) * plan_.domain.ny;
+  const long cells = static_cast<long>(plan_.domain.nx) * plan_.domain.ny * plan_.domain.nz;
   s.cells = cells;
   s.steps = static_cast<long>(intervals_done_) * plan_.fluid_steps;
   s.substeps = plan_.substeps;
@@ -240,6 +276,10 @@ Summary Observers::summary(double wall_seconds) const {
                   {"box_x", scene_.box.size.x()},
                   {"box_y", scene_.box.size.y()},
                   {"velocity_scale", scene_.fluid.velocity_scale}};
+  if (scene_.box.dimension == 3) {
+    s.parameters["box_z"] = scene_.box.size.z();
+    s.parameters["gravity_z"] = scene_.fluid.gravity.z();
+  }
   if (scene_.particles) {
     s.parameters["diameter"] = scene_.particles->diameter.hi;
     s.parameters["particle_density"] = scene_.particles->density.hi;

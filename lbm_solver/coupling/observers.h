@@ -32,13 +32,15 @@ class PartClock {
 };
 
 /// Everything that watches a run without changing it: guard, probes, fields, progress, summary.
+/// Where several ranks share the box, all call the same functions at the same intervals; the first
+/// writes the files.
 class Observers {
  public:
   /// @param first  interval at which the run begins or goes on; earlier output is kept
-  Observers(const Scene& scene, const Plan& plan, const std::string& folder, Log& log,
-            std::int64_t first = 0);
+  Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+            const std::string& folder, Log& log, std::int64_t first = 0);
 
-  /// What a checkpoint must keep of the observers.
+  /// What a checkpoint must keep of the observers; the same on every rank.
   std::vector<double> state() const;
   void restore(const std::vector<double>& state);
 
@@ -53,8 +55,8 @@ class Observers {
   void after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles);
   /// At the last state, which has no loads.
   void at_end(std::int64_t interval, Fluid& fluid, const Particles* particles);
-  /// After each fluid step of a scene with obstacles: loads in the order of obstacle_discs.
-  void add_loads(std::span<const DiscLoad> loads) { obstacles_->add(loads); }
+  /// After each fluid step of a scene with obstacles: loads in the order of obstacle_bodies.
+  void add_loads(std::span<const BodyLoad> loads) { obstacles_->add(loads); }
   /// A fluid alone whose velocity no longer changes (run.steady_below).
   bool steady() const { return steady_ && steady_->steady(); }
 
@@ -62,19 +64,23 @@ class Observers {
 
  private:
   void guard(std::int64_t interval, Fluid& fluid, const Particles* particles);
-  void add_bonds(const Particles& particles, FieldFrame& frame) const;
+  void add_particles(const Particles& particles, FieldFrame& frame) const;
+  void add_bonds(const std::vector<protocol::Particle>& particles,
+                 const protocol::BondReport& bonds, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
   void write_probes(double time, const Fluid& fluid, const Particles* particles, bool last);
   void report_progress(std::int64_t interval, const Particles* particles);
 
   const Scene& scene_;
   const Plan& plan_;
+  const Decomposition ranks_;
   Log& log_;
+  bool draws_ = false;                 // fields are asked for
   std::optional<ProbeWriter> probes_;  // particles
   std::optional<CsvWriter> points_;
   std::optional<ObstacleLoads> obstacles_;
   std::optional<SteadyWatch> steady_;
-  std::optional<FieldWriter> fields_;
+  std::optional<FieldWriter> fields_;  // of rank 0, like the tables
   std::int64_t guard_every_, intervals_done_ = 0;
   double next_probe_ = 0.0, next_field_ = 0.0;
   double max_speed_ = 0.0, last_speed_ = 0.0;           // of the fluid, lattice units

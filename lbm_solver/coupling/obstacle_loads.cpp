@@ -3,20 +3,24 @@
 
 namespace lbm {
 
-ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const std::string& folder,
-                             double keep_until)
-    : units_(plan.units),
-      table_(folder + "/obstacles.csv", "time,obstacle,fx,fy,torque", keep_until) {
+ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+                             const std::string& folder, double keep_until)
+    : units_(plan.units), ranks_(ranks) {
+  const bool flat = scene.box.dimension == 2;
+  if (ranks.rank() == 0)
+    table_.emplace(folder + "/obstacles.csv",
+                   flat ? "time,obstacle,fx,fy,torque" : "time,obstacle,fx,fy,fz,tx,ty,tz",
+                   keep_until);
   int lines = 0;
   for (const ObstacleScene& o : scene.obstacles) {
-    if (!o.disc) continue;
+    if (!o.round) continue;
     has_grains_ = has_grains_ || o.grain;
     line_.push_back(o.grain ? 0 : ++lines);
   }
   sums_.resize(lines + 1);
 }
 
-void ObstacleLoads::add(std::span<const DiscLoad> loads) {
+void ObstacleLoads::add(std::span<const BodyLoad> loads) {
   for (std::size_t i = 0; i < loads.size(); ++i) {
     sums_[line_[i]].force += loads[i].force;
     sums_[line_[i]].torque += loads[i].torque;
@@ -24,27 +28,52 @@ void ObstacleLoads::add(std::span<const DiscLoad> loads) {
   ++steps_;
 }
 
+/// The sums of all ranks.
+std::vector<BodyLoad> ObstacleLoads::whole() const {
+  std::vector<double> parts;
+  for (const BodyLoad& s : sums_)
+    for (const Vec3* v : {&s.force, &s.torque}) parts.insert(parts.end(), v->begin(), v->end());
+  ranks_.sum(parts);
+  std::vector<BodyLoad> all(sums_.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].force = {parts[6 * i], parts[6 * i + 1], parts[6 * i + 2]};
+    all[i].torque = {parts[6 * i + 3], parts[6 * i + 4], parts[6 * i + 5]};
+  }
+  return all;
+}
+
 void ObstacleLoads::write(double time) {
   if (steps_ == 0) return;
-  const double force = units_.force() / steps_;
-  for (std::size_t i = has_grains_ ? 0 : 1; i < sums_.size(); ++i)
-    table_.row({time, static_cast<double>(i), sums_[i].force.x() * force,
-                sums_[i].force.y() * force, sums_[i].torque * force * units_.dx});
-  table_.flush();
-  sums_.assign(sums_.size(), DiscLoad{});
+  const std::vector<BodyLoad> all = whole();
+  for (std::size_t i = has_grains_ ? 0 : 1; table_ && i < all.size(); ++i) {
+    const Vec3 force = all[i].force * (units_.force() / steps_);
+    const Vec3 torque = all[i].torque * (units_.torque() / steps_);
+    const auto number = static_cast<double>(i);
+    if (ranks_.domain().dimension() == 2)
+      table_->row({time, number, force.x(), force.y(), torque.z()});
+    else
+      table_->row(
+          {time, number, force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z()});
+  }
+  if (table_) table_->flush();
+  sums_.assign(sums_.size(), BodyLoad{});
   steps_ = 0;
 }
 
 std::vector<double> ObstacleLoads::state() const {
   std::vector<double> s{static_cast<double>(steps_)};
-  for (const DiscLoad& sum : sums_) s.insert(s.end(), {sum.force.x(), sum.force.y(), sum.torque});
+  for (const BodyLoad& sum : whole())
+    for (const Vec3* v : {&sum.force, &sum.torque}) s.insert(s.end(), v->begin(), v->end());
   return s;
 }
 
 void ObstacleLoads::restore(std::span<const double> s) {
   steps_ = static_cast<int>(s[0]);
-  for (std::size_t i = 0; i < sums_.size(); ++i)
-    sums_[i] = {{s[1 + 3 * i], s[2 + 3 * i]}, s[3 + 3 * i]};
+  if (ranks_.rank() != 0) return;  // the first keeps what all had
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const double* v = &s[1 + 6 * i];
+    sums_[i] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  }
 }
 
 }  // namespace lbm

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "lbm_solver/immersed/disc.h"
+#include "lbm_solver/immersed/body.h"
 #include "lbm_solver/io/probe_writer.h"
 #include "lbm_solver/solver/plan.h"
 
@@ -17,20 +18,26 @@ namespace lbm {
 class ObstacleLoads {
  public:
   /// @param keep_until  a run that goes on keeps the lines before this time
-  ObstacleLoads(const Scene& scene, const Plan& plan, const std::string& folder, double keep_until);
+  ObstacleLoads(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+                const std::string& folder, double keep_until);
 
-  /// After each fluid step: loads in the order of obstacle_discs.
-  void add(std::span<const DiscLoad> loads);
+  /// After each fluid step: this rank's loads in the order of obstacle_bodies.
+  void add(std::span<const BodyLoad> loads);
+  /// Collective.
   void write(double time);
 
+  /// Collective; the same on every rank, and what `restore` wants on every rank.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 
  private:
+  std::vector<BodyLoad> whole() const;
+
   const Units units_;
-  CsvWriter table_;
-  std::vector<int> line_;       // [obstacle]: into sums_
-  std::vector<DiscLoad> sums_;  // since the last line; 0: grains
+  const Decomposition ranks_;
+  std::optional<CsvWriter> table_;  // of rank 0
+  std::vector<int> line_;           // [obstacle]: into sums_
+  std::vector<BodyLoad> sums_;      // since the last line, of this rank; 0: grains
   bool has_grains_ = false;
   int steps_ = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 #include <unordered_map>
@@ -13,21 +14,45 @@ namespace {
 
 constexpr double kAverage = 0.2;  // weight of the latest interval in a mean acceleration
 
+Vec3 to_vec3(const protocol::Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+double relaxation_time(const Units& units, const FluidScene& fluid) {
+  return 0.5 + 3.0 * fluid.viscosity * units.dt / (units.dx * units.dx);
+}
+
+/// Density over the fluid's below which a particle gets a virtual mass.
+double light_ratio(const Units& units, const FluidScene& fluid) {
+  return relaxation_time(units, fluid) > kViscousTau ? kViscousRatio : kLightRatio;
+}
+
 }  // namespace
 
-Particles::Particles(const Units& units, const Scene& scene)
+Particles::Particles(const Units& units, const Scene& scene, const Decomposition& ranks)
     : units_(units),
       fluid_(scene.fluid),
       coupling_(*scene.coupling),
-      hydraulic_ratio_(scene.particles->hydraulic_ratio) {}
+      hydraulic_ratio_(scene.particles->hydraulic_ratio),
+      ranks_(ranks),
+      flat_(ranks.domain().dimension() == 2),
+      light_about_(coupling_.virtual_mass ? *coupling_.virtual_mass > 0.0
+                                          : scene.particles->density.lo <
+                                                light_ratio(units, fluid_) * fluid_.density) {}
 
-void Particles::arrive(std::span<const protocol::Particle> particles, double interval) {
-  past_.clear();
+std::vector<Particles::Past> Particles::present() const {
+  std::vector<Past> all;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const protocol::State& s = particles_[i].state;
-    const protocol::Load sent = i < loads_.size() ? loads_[i] : protocol::Load{};
-    past_.push_back({s.id, {s.v, s.omega}, sent.force, sent.torque, mean_change_[i]});
+    const auto& sent = whole_.empty() ? loads_ : whole_;
+    const protocol::Load load = i < sent.size() ? sent[i] : protocol::Load{};
+    all.push_back({s.id, {s.v, s.omega}, load.force, load.torque, mean_change_[i]});
   }
+  return all;
+}
+
+void Particles::arrive(std::span<const protocol::Particle> particles, double interval) {
+  past_ = present();
   std::unordered_map<std::int64_t, const Past*> by_id;  // only where the order has changed
   const auto past_of = [&](std::size_t i, std::int64_t id) -> const Past* {
     if (i < past_.size() && past_[i].id == id) return &past_[i];
@@ -55,12 +80,27 @@ void Particles::arrive(std::span<const protocol::Particle> particles, double int
     }
   }
   loads_.clear();
-  sums_.assign(particles.size(), DiscLoad{});
+  whole_.clear();
+  sums_.assign(particles.size(), BodyLoad{});
 }
 
 double Particles::radius(std::size_t i) const {
   const auto type = static_cast<std::size_t>(std::max<std::int64_t>(1, particles_[i].shape.type));
   return particles_[i].shape.radius * hydraulic_ratio_[std::min(type, hydraulic_ratio_.size()) - 1];
+}
+
+/// This rank holds the centre, or the cell of the box that is nearest to it.
+bool Particles::at_home(std::size_t i) const {
+  if (ranks_.alone()) return true;
+  const Vec3 centre = units_.to_lattice_position(to_vec3(particles_[i].state.x));
+  const Domain& domain = ranks_.domain();
+  Cell3 cell{0, 0, 0};
+  for (int a = 0; a < domain.dimension(); ++a) {
+    const int n = domain.cells()[a];
+    const auto at = static_cast<int>(std::floor(centre[a]));
+    cell[a] = domain.sides()[a] == Side::Periodic ? ((at % n) + n) % n : std::clamp(at, 0, n - 1);
+  }
+  return ranks_.cells().holds(cell);
 }
 
 std::vector<double> Particles::masses() const {
@@ -69,19 +109,22 @@ std::vector<double> Particles::masses() const {
   return masses;
 }
 
-std::span<const Disc> Particles::discs(double elapsed) {
-  discs_.resize(particles_.size());
+std::span<const Body> Particles::bodies(double elapsed) {
+  bodies_.resize(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const protocol::State& s = particles_[i].state;
-    const Vec2 velocity(s.v[0], s.v[1]);
-    const Vec2 centre = Vec2(s.x[0], s.x[1]) + elapsed * velocity;
-    discs_[i] = {s.id, units_.to_lattice_position(centre), radius(i) / units_.dx,
-                 units_.to_lattice_velocity(velocity), units_.to_lattice_spin(s.omega[2])};
+    const Vec3 velocity = to_vec3(s.v), centre = to_vec3(s.x) + elapsed * velocity;
+    Body& b = bodies_[i];
+    b = {s.id, units_.to_lattice_position(centre), radius(i) / units_.dx,
+         units_.to_lattice_velocity(velocity), units_.to_lattice_spin(to_vec3(s.omega))};
+    if (!flat_) continue;
+    b.centre.z() = b.velocity.z() = 0.0;
+    b.spin = b.spin.z();
   }
-  return discs_;
+  return bodies_;
 }
 
-void Particles::add(std::span<const DiscLoad> loads) {
+void Particles::add(std::span<const BodyLoad> loads) {
   for (std::size_t i = 0; i < loads.size(); ++i) {
     sums_[i].force += loads[i].force;
     sums_[i].torque += loads[i].torque;
@@ -89,49 +132,64 @@ void Particles::add(std::span<const DiscLoad> loads) {
 }
 
 protocol::Load Particles::hydrodynamic(std::size_t i, int steps) const {
-  const Vec2 force = sums_[i].force * (units_.force() / steps);
-  const double torque = sums_[i].torque * (units_.torque() / steps);
-  protocol::Load load{particles_[i].state.id, {force.x(), force.y(), 0.0}, {0.0, 0.0, torque}};
-  const double r = radius(i), fluid_mass = displaced_mass(i);
+  const Vec3 force = sums_[i].force * (units_.force() / steps);
+  const Vec3 torque = sums_[i].torque * (units_.torque() / steps);
+  protocol::Load load{particles_[i].state.id,
+                      {force.x(), force.y(), force.z()},
+                      {torque.x(), torque.y(), torque.z()}};
+  if (!at_home(i)) return load;
+  const double fluid_mass = displaced_mass(i);
+  const int last = flat_ ? 2 : 3;  // axes of a force
   if (coupling_.inner_inertia) {
-    const double fluid_inertia = 0.5 * fluid_mass * r * r;
+    const double fluid_inertia = fluid_mass * inner_inertia(i);
     const Motion& change = virtual_mass(i) > 0.0 ? mean_change_[i] : change_[i];
-    for (int k = 0; k < 2; ++k) load.force[k] += fluid_mass * change.v[k] / interval_;
-    load.torque[2] += fluid_inertia * change.omega[2] / interval_;
+    for (int k = 0; k < last; ++k) load.force[k] += fluid_mass * change.v[k] / interval_;
+    for (int k = flat_ ? 2 : 0; k < 3; ++k)
+      load.torque[k] += fluid_inertia * change.omega[k] / interval_;
   }
   if (coupling_.buoyancy == protocol::Buoyancy::ByFluid)
-    for (int k = 0; k < 2; ++k) load.force[k] -= fluid_mass * fluid_.gravity[k];
+    for (int k = 0; k < last; ++k) load.force[k] -= fluid_mass * fluid_.gravity[k];
   return load;
 }
 
 double Particles::displaced_mass(std::size_t i) const {
   const double r = radius(i);
-  return fluid_.density * std::numbers::pi * r * r * units_.depth;
+  return fluid_.density * std::numbers::pi * r * r * (flat_ ? units_.depth : 4.0 / 3.0 * r);
+}
+
+double Particles::inner_inertia(std::size_t i) const {
+  const double r = radius(i);
+  return (flat_ ? 0.5 : 0.4) * r * r;
 }
 
 double Particles::virtual_mass(std::size_t i) const {
+  if (!light_about_) return 0.0;
   if (coupling_.virtual_mass) return *coupling_.virtual_mass;
-  const double tau = 0.5 + 3.0 * fluid_.viscosity * units_.dt / (units_.dx * units_.dx);
-  const double limit = tau > kViscousTau ? kViscousRatio : kLightRatio;
+  const double limit = light_ratio(units_, fluid_);
   return particles_[i].shape.mass < limit * displaced_mass(i) ? kVirtualMass : 0.0;
 }
 
 void Particles::add_virtual_mass(std::size_t i, protocol::Load& load) const {
   const protocol::Shape& shape = particles_[i].shape;
-  const double mass = virtual_mass(i) * displaced_mass(i), r = radius(i);
+  const double mass = virtual_mass(i) * displaced_mass(i);
   if (mass == 0.0) return;
-  const auto blend = [](double load, double acceleration, double others, double own, double extra) {
-    return (own * (load + extra * acceleration) - extra * others) / (own + extra);
+  const bool home = at_home(i);
+  const auto blend = [home](double load, double acceleration, double others, double own,
+                            double extra) {
+    const double known = home ? own * extra * acceleration - extra * others : 0.0;
+    return (own * load + known) / (own + extra);
   };
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < (flat_ ? 2 : 3); ++k) {
     const double acceleration = change_[i].v[k] / interval_;
     const double others = before_[i] ? shape.mass * acceleration - before_[i]->force[k]
                                      : shape.mass * fluid_.gravity[k];
     load.force[k] = blend(load.force[k], acceleration, others, shape.mass, mass);
   }
-  const double spin_up = change_[i].omega[2] / interval_;
-  const double others = before_[i] ? shape.inertia * spin_up - before_[i]->torque[2] : 0.0;
-  load.torque[2] = blend(load.torque[2], spin_up, others, shape.inertia, 0.5 * mass * r * r);
+  for (int k = flat_ ? 2 : 0; k < 3; ++k) {
+    const double spin_up = change_[i].omega[k] / interval_;
+    const double others = before_[i] ? shape.inertia * spin_up - before_[i]->torque[k] : 0.0;
+    load.torque[k] = blend(load.torque[k], spin_up, others, shape.inertia, mass * inner_inertia(i));
+  }
 }
 
 std::span<const protocol::Load> Particles::mean_loads(int steps) {
@@ -140,6 +198,7 @@ std::span<const protocol::Load> Particles::mean_loads(int steps) {
     loads_[i] = hydrodynamic(i, steps);
     add_virtual_mass(i, loads_[i]);
   }
+  if (light_about_ && !ranks_.alone()) share_light();
   return loads_;
 }
 
@@ -151,17 +210,88 @@ void keep(std::vector<double>& memory, std::initializer_list<protocol::Vec3> vec
   for (const protocol::Vec3& v : vectors) memory.insert(memory.end(), v.begin(), v.end());
 }
 
+void add_to(protocol::Vec3& sum, const double* part) {
+  for (int k = 0; k < 3; ++k) sum[k] += part[k];
+}
+
 }  // namespace
+
+/// The next interval's virtual mass needs the whole load of this one, and the home's mean change.
+void Particles::share_light() {
+  constexpr std::size_t line = 14;  // id, home, force, torque, mean change
+  std::vector<double> lines;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    lines.insert(lines.end(), {static_cast<double>(loads_[i].id), at_home(i) ? 1.0 : 0.0});
+    keep(lines, {loads_[i].force, loads_[i].torque, mean_change_[i].v, mean_change_[i].omega});
+  }
+  lines = ranks_.collect(lines);
+  ranks_.broadcast(lines);
+  std::unordered_map<std::int64_t, std::size_t> mine;
+  whole_.assign(particles_.size(), {});
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    mine.emplace(loads_[i].id, i);
+    whole_[i].id = loads_[i].id;
+  }
+  for (const double* l = lines.data(); l < lines.data() + lines.size(); l += line) {
+    const auto found = mine.find(static_cast<std::int64_t>(l[0]));
+    if (found == mine.end()) continue;
+    add_to(whole_[found->second].force, l + 2);
+    add_to(whole_[found->second].torque, l + 5);
+    if (l[1] == 0.0) continue;
+    std::copy_n(l + 8, 3, mean_change_[found->second].v.begin());
+    std::copy_n(l + 11, 3, mean_change_[found->second].omega.begin());
+  }
+}
+
+Particles::Everything Particles::gather() const {
+  Everything all;
+  if (ranks_.alone()) return {particles_, loads_};
+  constexpr std::size_t line = 21;
+  std::vector<double> lines;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const auto& [s, shape] = particles_[i];
+    lines.insert(lines.end(), {static_cast<double>(s.id), at_home(i) ? 1.0 : 0.0});
+    keep(lines, {s.x, s.v, s.omega});
+    lines.insert(lines.end(),
+                 {shape.radius, shape.mass, shape.inertia, static_cast<double>(shape.type)});
+    const protocol::Load load = i < loads_.size() ? loads_[i] : protocol::Load{};
+    keep(lines, {load.force, load.torque});
+  }
+  lines = ranks_.collect(lines);
+  std::map<std::int64_t, std::pair<protocol::Particle, protocol::Load>> by_id;
+  for (const double* l = lines.data(); l < lines.data() + lines.size(); l += line) {
+    const auto id = static_cast<std::int64_t>(l[0]);
+    auto& [particle, load] = by_id[id];
+    load.id = id;
+    add_to(load.force, l + 15);
+    add_to(load.torque, l + 18);
+    if (l[1] == 0.0) continue;
+    protocol::State& s = particle.state;
+    s.id = id;
+    std::copy_n(l + 2, 3, s.x.begin());
+    std::copy_n(l + 5, 3, s.v.begin());
+    std::copy_n(l + 8, 3, s.omega.begin());
+    particle.shape = {id, l[11], l[12], l[13], static_cast<std::int64_t>(l[14])};
+  }
+  for (const auto& [id, both] : by_id) {
+    if (both.first.state.id != id) continue;  // its home is outside the box
+    all.particles.push_back(both.first);
+    all.loads.push_back(both.second);
+  }
+  return all;
+}
 
 std::vector<double> Particles::memory() const {
   std::vector<double> memory;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const protocol::State& s = particles_[i].state;
-    memory.push_back(static_cast<double>(s.id));
-    keep(memory, {s.v, s.omega, loads_[i].force, loads_[i].torque, mean_change_[i].v,
-                  mean_change_[i].omega});
+  const std::vector<Past> all = present();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!at_home(i)) continue;
+    const Past& p = all[i];
+    memory.push_back(static_cast<double>(p.id));
+    keep(memory,
+         {p.motion.v, p.motion.omega, p.force, p.torque, p.mean_change.v, p.mean_change.omega});
   }
-  return memory;
+  return ranks_.collect(memory);
 }
 
 void Particles::restore(std::span<const double> memory) {
@@ -186,8 +316,8 @@ void Particles::restore(std::span<const double> memory) {
 double Particles::max_speed() const {
   double largest = 0.0;
   for (const auto& p : particles_)
-    largest = std::max(largest, std::hypot(p.state.v[0], p.state.v[1]) +
-                                    std::abs(p.state.omega[2]) * p.shape.radius);
+    largest = std::max(largest,
+                       to_vec3(p.state.v).norm() + to_vec3(p.state.omega).norm() * p.shape.radius);
   return largest;
 }
 

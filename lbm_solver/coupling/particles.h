@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "lbm_solver/base/scene.h"
-#include "lbm_solver/immersed/disc.h"
+#include "lbm_solver/field/decomposition.h"
+#include "lbm_solver/immersed/body.h"
 #include "protocol/session.h"
 
 namespace lbm {
@@ -19,13 +20,14 @@ namespace lbm {
 inline constexpr double kLightRatio = 0.9, kViscousTau = 0.8, kViscousRatio = 2.0;
 inline constexpr double kVirtualMass = 2.0;
 
-/// The solid's particles between wire and lattice: SI states in, discs in lattice units out,
+/// The solid's particles between wire and lattice: SI states in, bodies in lattice units out,
 /// lattice loads in, SI loads out.
 ///
 /// The force that a covered region receives from the lattice includes the change of momentum of the
 /// fluid inside it, m_f dU/dt. The solid integrates its own mass only, so that part is given back:
-///   F = mean(F_lattice) + m_f (U_k - U_{k-1})/T + buoyancy,   m_f = rho_f pi R² depth,
-///   T = mean(T_lattice) + I_f (ω_k - ω_{k-1})/T,              I_f = ½ m_f R²,
+///   F = mean(F_lattice) + m_f (U_k - U_{k-1})/T + buoyancy,   T = mean(T_lattice) + I_f (ω_k -
+///   ω_{k-1})/T, disc: m_f = rho_f pi R² depth, I_f = ½ m_f R²,   sphere: m_f = 4/3 rho_f pi R³,
+///   I_f = 2/5 m_f R²,
 /// with R the radius that the fluid sees (`hydraulic_ratio` times the particle's).
 ///
 /// A light particle answers a change of load with a large acceleration, which the fluid answers a
@@ -38,9 +40,15 @@ inline constexpr double kVirtualMass = 2.0;
 /// m_f dU/dt of such a particle takes the mean acceleration over some five intervals: surface cells
 /// follow a change more slowly than that term gives it back, which alone blows up below
 /// rho_s/rho_f = 0.25. Proven down to 0.1.
+///
+/// Where several ranks share the box, each knows the particles that touch its cells and sends the
+/// part of F that its cells saw; all that is known of a particle as a whole (inner fluid, buoyancy,
+/// virtual mass) is added by its home, the rank that holds its centre. The solid adds the parts.
 class Particles {
  public:
-  Particles(const Units& units, const Scene& scene);
+  Particles(const Units& units, const Scene& scene, const Decomposition& ranks);
+  Particles(const Units& units, const Scene& scene, const Domain& domain)
+      : Particles(units, scene, Decomposition(domain)) {}
 
   /// What the solid told about its bonds with the particles; null where it has none.
   const protocol::BondReport* bonds() const { return bonds_ ? &*bonds_ : nullptr; }
@@ -52,57 +60,74 @@ class Particles {
   std::size_t size() const { return particles_.size(); }
   std::span<const protocol::Particle> states() const { return particles_; }
 
-  /// Where the discs are `elapsed` seconds after the interval began, moving on straight.
-  std::span<const Disc> discs(double elapsed);
+  /// Where the bodies are `elapsed` seconds after the interval began, moving on straight.
+  std::span<const Body> bodies(double elapsed);
 
-  /// Masses of the discs, lattice units.
+  /// Masses of the bodies, lattice units.
   std::vector<double> masses() const;
 
   /// Adds the loads of one fluid step.
-  void add(std::span<const DiscLoad> loads);
+  void add(std::span<const BodyLoad> loads);
 
-  /// Mean load over `steps` fluid steps, complete, for the wire.
+  /// Mean load over `steps` fluid steps, this rank's part, for the wire. Collective where light
+  /// particles are about: then the ranks tell each other the whole loads.
   std::span<const protocol::Load> mean_loads(int steps);
-  /// What mean_loads returned last, in the order of states().
-  std::span<const protocol::Load> last_loads() const { return loads_; }
 
-  /// What the next interval needs of the last one, for a checkpoint; before `arrive`.
+  /// All particles of the box, each once, in the order of their ids.
+  struct Everything {
+    std::vector<protocol::Particle> particles;
+    std::vector<protocol::Load> loads;  ///< what mean_loads returned last, whole; may be empty
+  };
+  /// On rank 0; elsewhere empty. Collective.
+  Everything gather() const;
+
+  /// What the next interval needs of the last one, for a checkpoint; before `arrive`. Complete on
+  /// rank 0. Collective.
   std::vector<double> memory() const;
+  /// @param memory  the same on every rank
   /// @throws std::invalid_argument where it is no memory of particles
   void restore(std::span<const double> memory);
 
-  double max_speed() const;  ///< [m/s], of centre and rim
+  double max_speed() const;  ///< [m/s], of centre and rim, of this rank's
 
  private:
   struct Motion {
-    protocol::Vec3 v, omega;
+    protocol::Vec3 v{}, omega{};
   };
   /// What is kept of a particle from one interval to the next.
   struct Past {
-    std::int64_t id;
+    std::int64_t id = 0;
     Motion motion;
-    protocol::Vec3 force, torque;  ///< as sent
-    Motion mean_change;            ///< see mean_change_
+    protocol::Vec3 force{}, torque{};  ///< as sent, whole where virtual masses are about
+    Motion mean_change;                ///< of the last intervals, the latest with weight kAverage
   };
   double radius(std::size_t i) const;          // that the fluid sees [m]
   double displaced_mass(std::size_t i) const;  // of fluid [kg]
+  double inner_inertia(std::size_t i) const;   // per displaced mass [m²]
+  bool at_home(std::size_t i) const;
   protocol::Load hydrodynamic(std::size_t i, int steps) const;
   double virtual_mass(std::size_t i) const;  // over the displaced mass
   void add_virtual_mass(std::size_t i, protocol::Load& load) const;
+  void share_light();
+  std::vector<Past> present() const;
 
   Units units_;
   FluidScene fluid_;
   CouplingScene coupling_;
   std::vector<double> hydraulic_ratio_;
+  Decomposition ranks_;
+  bool flat_;         // two dimensions
+  bool light_about_;  // some particle may get a virtual mass
   double interval_ = 0.0;
   std::vector<protocol::Particle> particles_;
   std::vector<Motion> change_;  // of velocities since the interval before; 0 for a new particle
-  std::vector<Motion> mean_change_;  // of the last intervals, the latest with weight kAverage
+  std::vector<Motion> mean_change_;
   std::vector<Past> past_;
   std::vector<const Past*> before_;  // [particle], null for a new one
-  std::vector<Disc> discs_;
-  std::vector<DiscLoad> sums_;
-  std::vector<protocol::Load> loads_;
+  std::vector<Body> bodies_;
+  std::vector<BodyLoad> sums_;
+  std::vector<protocol::Load> loads_;  // this rank's parts
+  std::vector<protocol::Load> whole_;  // of all ranks; where virtual masses are about
   std::optional<protocol::BondReport> bonds_;
 };
 

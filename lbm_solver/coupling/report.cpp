@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -27,12 +28,12 @@ const char* buoyancy_text(protocol::Buoyancy b) {
 }
 
 /// Seconds a fluid step takes, by doing some for a tenth of a second.
-double measure_step(Fluid& fluid, const std::vector<Disc>& discs) {
+double measure_step(Fluid& fluid, const std::vector<Body>& bodies) {
   using Clock = std::chrono::steady_clock;
   const auto step = [&] {
-    if (!discs.empty()) fluid.place(discs);
+    if (!bodies.empty()) fluid.place(bodies);
     fluid.step();
-    if (!discs.empty()) fluid.loads();
+    if (!bodies.empty()) fluid.loads();
   };
   step();
   const auto start = Clock::now();
@@ -62,9 +63,21 @@ std::string describe(const Scene& s, const Plan& p) {
   const auto line = [&out](const char* name, const std::string& value) {
     out += fmt::format("{:<12} {}\n", name, value);
   };
-  line("box", fmt::format("{:.6g} × {:.6g} m, depth {:.6g} m, sides x {}, y {}", s.box.size.x(),
-                          s.box.size.y(), s.box.depth, text(s.box.x), text(s.box.y)));
-  line("grid", fmt::format("{} × {} cells of {:.6g} m", p.domain.nx, p.domain.ny, p.units.dx));
+  const bool flat = s.box.dimension == 2;
+  const std::string sides =
+      fmt::format("sides x {}, y {}", text(s.box.sides[0]), text(s.box.sides[1]));
+  const std::string precision = p.kernel.precision == Precision::Single ? ", single precision" : "";
+  if (flat) {
+    line("box", fmt::format("{:.6g} × {:.6g} m, depth {:.6g} m, {}", s.box.size.x(), s.box.size.y(),
+                            s.box.depth, sides));
+    line("grid", fmt::format("{} × {} cells of {:.6g} m{}", p.domain.nx, p.domain.ny, p.units.dx,
+                             precision));
+  } else {
+    line("box", fmt::format("{:.6g} × {:.6g} × {:.6g} m, {}, z {}", s.box.size.x(), s.box.size.y(),
+                            s.box.size.z(), sides, text(s.box.sides[2])));
+    line("grid", fmt::format("{} × {} × {} cells of {:.6g} m, {}{}", p.domain.nx, p.domain.ny,
+                             p.domain.nz, p.units.dx, p.kernel.lattice, precision));
+  }
   line("fluid step", fmt::format("Δt = {:.6g} s, C = Δx/Δt = {:.6g} m/s [{}]", p.units.dt,
                                  p.lattice_speed, p.step_limit));
   line("fluid", fmt::format("ρ {:.6g} kg/m³, ν {:.6g} m²/s, τ = {:.6g}", s.fluid.density,
@@ -93,12 +106,13 @@ std::string describe(const Scene& s, const Plan& p) {
 }
 
 std::string describe_cost(const Scene& s, const Plan& p) {
-  std::string on = "collision " + p.kernel.collision, off;
+  std::string on = p.kernel.lattice + ", collision " + p.kernel.collision, off;
   const auto part = [&](bool used, const std::string& text, const std::string& absent) {
     std::string& list = used ? on : off;
     list += (list.empty() ? "" : ", ") + (used ? text : absent);
   };
-  const bool walls = s.box.x == SideKind::Wall || s.box.y == SideKind::Wall;
+  const bool walls = std::any_of(s.box.sides.begin(), s.box.sides.begin() + s.box.dimension,
+                                 [](SideKind k) { return k == SideKind::Wall; });
   part(walls, "half-way walls", "walls");
   part(!s.boundaries.empty(), "boundaries: " + boundary_text(s), "inlets and outlets");
   part(s.box.pressure_jump.norm() > 0.0, "pressure jump", "pressure jump");
@@ -113,6 +127,8 @@ std::string describe_cost(const Scene& s, const Plan& p) {
        "solids");
   part(!s.obstacles.empty(), fmt::format("{} obstacles at rest", s.obstacles.size()), "obstacles");
   part(s.coupling.has_value(), "solid program", "solid program");
+  part(s.box.dimension == 3, "three dimensions", "3D");
+  part(p.kernel.precision == Precision::Single, "single precision", "single precision");
   if (s.coupling) {
     part(s.coupling->inner_inertia, "inertia of the fluid inside", "inertia of the fluid inside");
     part(s.coupling->buoyancy != protocol::Buoyancy::None,
@@ -120,21 +136,19 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   }
   if (s.coupling) part(s.coupling->lubrication_range > 0.0, "lubrication", "lubrication");
   Fluid fluid = make_fluid(s, p);
-  std::vector<Disc> discs;
+  std::vector<Body> bodies;
   if (s.coupling) {
-    discs = obstacle_discs(s, p);
-    for (const Vec2& x : s.particles->start)
-      discs.push_back({static_cast<std::int64_t>(discs.size() + 1),
-                       p.units.to_lattice_position(x),
-                       0.5 * s.particles->diameter.hi / p.units.dx,
-                       {0.0, 0.0},
-                       0.0});
+    bodies = obstacle_bodies(s, p);
+    for (const Vec3& x : s.particles->start)
+      bodies.push_back({static_cast<std::int64_t>(bodies.size() + 1),
+                        p.units.to_lattice_position(x),
+                        0.5 * s.particles->diameter.hi / p.units.dx});
   }
-  const double step = measure_step(fluid, discs);
-  const double cells = static_cast<double>(p.domain.nx) * p.domain.ny;
+  const double step = measure_step(fluid, bodies);
+  const double cells = static_cast<double>(p.domain.nx) * p.domain.ny * p.domain.nz;
   const double total = step * static_cast<double>(p.intervals) * p.fluid_steps;
   return fmt::format(
-      "on           {}\noff          {}, 3D\n"
+      "on           {}\noff          {}\n"
       "cost         {:.3g} MB; {:.3g} s of fluid at the {:.0f} million updates/s just measured, "
       "one "
       "thread{}\n",

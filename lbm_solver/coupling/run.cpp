@@ -40,22 +40,28 @@ std::vector<double> identity(const Plan& plan) {
   const auto& p = plan.kernel.parameters;
   return {static_cast<double>(plan.domain.nx),
           static_cast<double>(plan.domain.ny),
+          static_cast<double>(plan.domain.nz),
+          plan.kernel.precision == Precision::Single ? 1.0 : 0.0,
           plan.units.dt,
           p.tau,
           static_cast<double>(plan.fluid_steps),
           static_cast<double>(plan.substeps)};
 }
 
-void save(const std::string& path, const Plan& plan, State state, const Observers& observers,
-          std::int64_t interval) {
+/// Collective; rank 0 writes.
+void save(const std::string& path, const Plan& plan, const Decomposition& ranks, State state,
+          const Observers& observers, std::int64_t interval) {
   state["observers"] = observers.state();
+  if (ranks.rank() != 0) return;
   state["identity"] = identity(plan);
   state["interval"] = {static_cast<double>(interval)};
   write_checkpoint(path, state);
 }
 
-State load(const std::string& path, const Plan& plan) {
+/// Every rank reads; the populations are for rank 0, which hands them out.
+State load(const std::string& path, const Plan& plan, const Decomposition& ranks) {
   State state = read_checkpoint(path);
+  if (ranks.rank() != 0) state["populations"].clear();
   if (state["identity"] != identity(plan) || state["interval"].size() != 1)
     throw InputError(path, "was written by a run with another grid or step",
                      "restart with the same scene and overlays");
@@ -86,23 +92,24 @@ RunStart start_of(const RunOptions& options, const Plan& plan, const State& stat
 /// The coupled time loop. An interval reads: states arrive, the fluid makes its steps, loads leave.
 class CoupledRun {
  public:
-  CoupledRun(const Scene& scene, const Plan& plan, protocol::Channel& channel,
-             const RunOptions& options, Log& log)
+  CoupledRun(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+             protocol::Channel& channel, const RunOptions& options, Log& log)
       : scene_(scene),
         plan_(plan),
+        ranks_(ranks),
         options_(options),
         log_(log),
-        state_(options.restart ? load(options.out + "/checkpoint.h5", plan) : State{}),
+        state_(options.restart ? load(options.out + "/checkpoint.h5", plan, ranks) : State{}),
         start_(start_of(options, plan, state_)),
-        solid_(channel, make_hello(scene, plan, start_), scene.coupling->timeout),
-        fluid_(make_fluid(scene, plan)),
-        discs_(obstacle_discs(scene, plan)),
-        obstacles_(discs_.size()),
-        particles_(plan.units, scene),
+        solid_(channel, make_hello(scene, plan, start_, ranks.cells()), scene.coupling->timeout),
+        fluid_(make_fluid(scene, plan, ranks)),
+        bodies_(obstacle_bodies(scene, plan)),
+        obstacles_(bodies_.size()),
+        particles_(plan.units, scene, ranks),
         lubrication_{(plan.kernel.parameters.tau - 0.5) / 3.0, scene.coupling->lubrication_range,
                      static_cast<double>(plan.fluid_steps)},
         partner_(solid_.agree()),
-        observers_(scene, plan, options.out, log, start_.interval),
+        observers_(scene, plan, ranks, options.out, log, start_.interval),
         end_(last_interval(plan, options)),
         every_(checkpoint_intervals(scene, plan)) {
     log.say(start_.interval, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s{}",
@@ -141,27 +148,27 @@ class CoupledRun {
     summary.versions[partner_.program] = partner_.program_version;
     summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
     summary.waiting = clock_.parts().at("waiting");
-    write_summary(options_.out, summary);
+    if (ranks_.rank() == 0) write_summary(options_.out, summary);
     return summary;
   }
 
  private:
   void advance(int step) {
-    discs_.resize(obstacles_);
-    const auto moving = particles_.discs(step * plan_.units.dt);
-    discs_.insert(discs_.end(), moving.begin(), moving.end());
-    fluid_.place(discs_);
+    bodies_.resize(obstacles_);
+    const auto moving = particles_.bodies(step * plan_.units.dt);
+    bodies_.insert(bodies_.end(), moving.begin(), moving.end());
+    fluid_.place(bodies_);
     clock_.charge("placing");
     fluid_.step();
     clock_.charge("sweep");
-    std::vector<DiscLoad> loads = fluid_.loads();
+    std::vector<BodyLoad> loads = fluid_.loads();
     if (lubrication_.range > 0.0) {
       masses_.resize(obstacles_, std::numeric_limits<double>::infinity());
       const std::vector<double> moving_masses = particles_.masses();
       masses_.insert(masses_.end(), moving_masses.begin(), moving_masses.end());
-      lubrication_.add(discs_, masses_, plan_.domain, loads);
+      lubrication_.add(bodies_, masses_, plan_.domain, ranks_.cells(), loads);
     }
-    const std::span<const DiscLoad> all(loads);
+    const std::span<const BodyLoad> all(loads);
     if (obstacles_ > 0) observers_.add_loads(all.first(obstacles_));
     particles_.add(all.subspan(obstacles_));
     clock_.charge("loads");
@@ -184,19 +191,20 @@ class CoupledRun {
   void write_checkpoint(std::int64_t interval) {
     State state = fluid_.state();
     state["particles"] = particles_.memory();
-    save(start_.checkpoint + ".h5", plan_, std::move(state), observers_, interval);
+    save(start_.checkpoint + ".h5", plan_, ranks_, std::move(state), observers_, interval);
     clock_.charge("checkpoint");
   }
 
   const Scene& scene_;
   const Plan& plan_;
+  const Decomposition& ranks_;
   const RunOptions& options_;
   Log& log_;
   const State state_;  // of the checkpoint that it goes on from
   const RunStart start_;
   protocol::FluidSession solid_;
   Fluid fluid_;
-  std::vector<Disc> discs_;  // obstacles first, then the particles
+  std::vector<Body> bodies_;  // obstacles first, then the particles
   const std::size_t obstacles_;
   Particles particles_;
   const Lubrication lubrication_;
@@ -210,21 +218,22 @@ class CoupledRun {
 
 }  // namespace
 
-Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& channel,
-                    const RunOptions& options, Log& log) {
-  return CoupledRun(scene, plan, channel, options, log).run();
+Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+                    protocol::Channel& channel, const RunOptions& options, Log& log) {
+  return CoupledRun(scene, plan, ranks, channel, options, log).run();
 }
 
-Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& options, Log& log) {
+Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+                  const RunOptions& options, Log& log) {
   const std::string checkpoint = options.out + "/checkpoint.h5";
-  Fluid fluid = make_fluid(scene, plan);
+  Fluid fluid = make_fluid(scene, plan, ranks);
   State state;
   if (options.restart) {
-    state = load(checkpoint, plan);
+    state = load(checkpoint, plan, ranks);
     fluid.restore(state);
   }
-  const bool loads = !obstacle_discs(scene, plan).empty();
-  Observers observers(scene, plan, options.out, log, fluid.steps());
+  const bool loads = !obstacle_bodies(scene, plan).empty();
+  Observers observers(scene, plan, ranks, options.out, log, fluid.steps());
   if (options.restart) {
     observers.restore(state["observers"]);
     log.say(fluid.steps(), "restart", "goes on from {}", checkpoint);
@@ -243,10 +252,11 @@ Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& option
     if (loads) observers.add_loads(fluid.loads());
     clock.charge("loads");
     observers.after_interval(step - 1, fluid, nullptr);
-    if (every > 0 && (fluid.steps() % every == 0 || protocol::signalled()))
-      save(checkpoint, plan, fluid.state(), observers, step);
+    const bool signalled = ranks.max(protocol::signalled() ? 1.0 : 0.0) > 0.0;
+    if (every > 0 && (fluid.steps() % every == 0 || signalled))
+      save(checkpoint, plan, ranks, fluid.state(), observers, step);
     clock.charge("output");
-    if (protocol::signalled()) {
+    if (signalled) {
       ending = "stopped by a signal";
       break;
     }
@@ -259,7 +269,7 @@ Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& option
   observers.at_end(step, fluid, nullptr);
   clock.charge("output");
   const Summary summary = summarise(scene, options, observers, clock, ending);
-  write_summary(options.out, summary);
+  if (ranks.rank() == 0) write_summary(options.out, summary);
   return summary;
 }
 

@@ -16,12 +16,14 @@ struct RunOptions {
   std::string set = "resolved", variant;  ///< names for the summary
 };
 
-/// Runs a coupled scene to its end and writes its summary.
+/// Runs a coupled scene to its end; rank 0 writes its summary.
+/// @param ranks  that share the box: all call it
 /// @throws ProtocolError and its kinds; what was written until then stays
-Summary run_coupled(const Scene& scene, const Plan& plan, protocol::Channel& channel,
-                    const RunOptions& options, Log& log);
+Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+                    protocol::Channel& channel, const RunOptions& options, Log& log);
 
 /// Runs a scene without a solid program.
-Summary run_alone(const Scene& scene, const Plan& plan, const RunOptions& options, Log& log);
+Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
+                  const RunOptions& options, Log& log);
 
 }  // namespace lbm

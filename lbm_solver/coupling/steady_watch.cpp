@@ -8,24 +8,28 @@
 namespace lbm {
 
 SteadyWatch::SteadyWatch(const Scene& scene, const Plan& plan, std::int64_t steps_between_looks)
-    : domain_(plan.domain), limit_(scene.steady_below) {
-  const double turnover = std::max(plan.domain.nx, plan.domain.ny) * plan.lattice_speed /
-                          scene.fluid.velocity_scale;  // steps
+    : limit_(scene.steady_below) {
+  const double turnover = std::max({plan.domain.nx, plan.domain.ny, plan.domain.nz}) *
+                          plan.lattice_speed / scene.fluid.velocity_scale;  // steps
   looks_a_turnover_ = turnover / static_cast<double>(steps_between_looks);
 }
 
 void SteadyWatch::look(Fluid& fluid) {
-  const int nx = domain_.nx, ny = domain_.ny;
-  std::vector<double> rho(nx), now(2 * static_cast<std::size_t>(nx) * ny);
-  double largest = 0.0, change = 0.0;
-  for (int y = 0; y < ny; ++y) {
-    const std::span row(now.data() + 2 * static_cast<std::size_t>(nx) * y, 2 * nx);
-    fluid.row(y, rho, row.first(nx), row.last(nx));
+  const Cell3& n = fluid.cells().size;
+  const auto nx = static_cast<std::size_t>(n[0]), rows = static_cast<std::size_t>(n[1]) * n[2];
+  std::vector<double> rho(nx), now(3 * nx * rows);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const std::span row(now.data() + 3 * nx * r, 3 * nx);
+    fluid.row(static_cast<int>(r) % n[1], static_cast<int>(r) / n[1], rho,
+              {row.first(nx), row.subspan(nx, nx), row.last(nx)});
   }
+  double largest = 0.0, change = 0.0;
   for (std::size_t i = 0; i < now.size(); ++i) {
     largest = std::max(largest, std::abs(now[i]));
     if (!before_.empty()) change = std::max(change, std::abs(now[i] - before_[i]));
   }
+  largest = fluid.ranks().max(largest);
+  change = fluid.ranks().max(change);
   steady_ = !before_.empty() && largest > 0.0 && change / largest * looks_a_turnover_ < limit_;
   before_ = std::move(now);
 }

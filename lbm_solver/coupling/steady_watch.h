@@ -13,13 +13,13 @@ namespace lbm {
 class SteadyWatch {
  public:
   SteadyWatch(const Scene& scene, const Plan& plan, std::int64_t steps_between_looks);
+  /// Collective.
   void look(Fluid& fluid);
   bool steady() const { return steady_; }
 
  private:
-  Domain domain_;
   double looks_a_turnover_, limit_;
-  std::vector<double> before_;  // ux and uy of a row, row by row
+  std::vector<double> before_;  // velocity components of a row, row by row
   bool steady_ = false;
 };
 

@@ -1,48 +1,99 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
-#include "lbm_solver/lattice/d2q9.h"
+#include "lbm_solver/base/vec3.h"
+#include "lbm_solver/lattice/lattice.h"
 
 namespace lbm {
 
-/// What a pair of opposite sides of the box does to populations that leave through it.
-enum class Side { Periodic, Wall };
+/// Type in which populations are stored. Sums of forces and masses are double in both.
+enum class Precision { Double, Single };
 
 /// Storage of one lattice: one padded array a direction (structure of arrays), each with a ghost
-/// row below and above and a ghost column behind. Stored are deviations from rest, f_i - w_i, so
-/// that a fluid at rest is exactly zero and round-off is relative to the motion.
+/// layer on every side (none in z in two dimensions). Stored are deviations from rest, f_i - w_i,
+/// so that a fluid at rest is exactly zero and round-off is relative to the motion; single
+/// precision owes its worth to that.
 class Populations {
  public:
-  /// @param nx, ny  cells
-  Populations(int nx, int ny);
+  /// @param cells  along x, y, z; in two dimensions z = 1
+  Populations(const Lattice& lattice, const Cell3& cells, Precision precision = Precision::Double);
 
-  int nx() const { return nx_; }
-  int ny() const { return ny_; }
+  const Lattice& lattice() const { return lattice_; }
+  Precision precision() const { return precision_; }
+  int nx() const { return cells_[0]; }
+  int ny() const { return cells_[1]; }
+  int nz() const { return cells_[2]; }
+  const Cell3& cells() const { return cells_; }
 
-  /// Start of row y (-1 … ny) of direction q; valid for x = -1 … nx.
-  double* row(int q, int y) { return first_ + q * plane_ + (y + 1) * stride_; }
-  const double* row(int q, int y) const { return first_ + q * plane_ + (y + 1) * stride_; }
+  /// Start of row (y, z) of direction q; y = -1 … ny, z = -1 … nz, valid for x = -1 … nx. `Real` is
+  /// the type that the precision names.
+  template <class Real>
+  Real* row(int q, int y, int z = 0) {
+    return static_cast<Real*>(memory_.get()) + start(q, y, z);
+  }
+  template <class Real>
+  const Real* row(int q, int y, int z = 0) const {
+    return static_cast<const Real*>(memory_.get()) + start(q, y, z);
+  }
+  /// Numbers between two rows that are neighbours in y.
+  std::ptrdiff_t stride() const { return stride_; }
 
-  /// The whole memory, padding included: two fields of the same extent have the same layout.
-  std::span<double> raw() { return {memory_.get(), size_}; }
-  std::span<const double> raw() const { return {memory_.get(), size_}; }
+  /// A value in either precision, by its number in memory.
+  double get(std::ptrdiff_t at) const {
+    return precision_ == Precision::Double ? static_cast<const double*>(memory_.get())[at]
+                                           : static_cast<const float*>(memory_.get())[at];
+  }
+  void set(std::ptrdiff_t at, double value) {
+    if (precision_ == Precision::Double)
+      static_cast<double*>(memory_.get())[at] = value;
+    else
+      static_cast<float*>(memory_.get())[at] = static_cast<float>(value);
+  }
+  std::ptrdiff_t start(int q, int y, int z) const {
+    return first_ + q * plane_ + ((z + ghost_z_) * (cells_[1] + 2) + y + 1) * stride_;
+  }
 
-  std::size_t bytes() const { return size_ * sizeof(double); }
+  std::size_t bytes() const { return bytes_; }
 
  private:
+  template <class Real>
+  void touch();
   struct Free {
-    void operator()(double* p) const;
+    void operator()(void* p) const;
   };
-  int nx_, ny_;
-  std::ptrdiff_t stride_, plane_;
-  std::size_t size_;
-  std::unique_ptr<double[], Free> memory_;
-  double* first_;
+  const Lattice& lattice_;
+  Cell3 cells_;
+  Precision precision_;
+  int ghost_z_;
+  std::ptrdiff_t stride_, plane_, first_;
+  std::size_t bytes_;
+  std::unique_ptr<void, Free> memory_;
+};
+
+/// One stored population, whatever its precision.
+class Population {
+ public:
+  Population(Populations& f, std::ptrdiff_t at) : f_(f), at_(at) {}
+  operator double() const { return f_.get(at_); }  // NOLINT: stands for the number
+  const Population& operator=(double value) const {
+    f_.set(at_, value);
+    return *this;
+  }
+  const Population& operator+=(double value) const { return *this = *this + value; }
+  Population(const Population&) = default;
+  const Population& operator=(const Population& other) const {
+    return *this = static_cast<double>(other);
+  }
+
+ private:
+  Populations& f_;
+  std::ptrdiff_t at_;
 };
 
 }  // namespace lbm

@@ -9,11 +9,12 @@
 namespace lbm {
 
 std::unique_ptr<BodyScheme> make_scheme(const std::string& name, const Domain& domain,
-                                        const SchemeParameters& p) {
+                                        const Lattice& lattice, const SchemeParameters& p) {
   if (name == "bounce_back")
-    return std::make_unique<LinkedBodies>(domain, WallPlace::HalfWay, 2.0 * p.half_force);
+    return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::HalfWay, 2.0 * p.half_force);
   if (name == "interpolated_bounce_back")
-    return std::make_unique<LinkedBodies>(domain, WallPlace::Interpolated, 2.0 * p.half_force);
+    return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::Interpolated,
+                                          2.0 * p.half_force);
   if (name == "implicit_immersed_boundary") return std::make_unique<ImplicitMarkers>(domain, p);
   if (name == "spring_immersed_boundary") return std::make_unique<SpringMarkers>(domain, p);
   std::string known;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lbm_solver/field/esoteric_pull.h"
-#include "lbm_solver/immersed/disc.h"
+#include "lbm_solver/immersed/body.h"
 #include "lbm_solver/immersed/footprint.h"
 
 namespace lbm {
@@ -21,13 +21,13 @@ class BodyScheme {
   virtual ~BodyScheme() = default;
 
   /// Places the solids for the coming step and prepares the cells for it.
-  virtual void before_sweep(std::span<const Disc> discs, Populations& f,
+  virtual void before_sweep(std::span<const Body> bodies, Populations& f,
                             const EsotericPull& stream) = 0;
   /// Corrects what arrived. `stream` has advanced.
   virtual void after_sweep(Populations&, const EsotericPull&) {}
 
-  /// Load of each disc over the last step, in the order of before_sweep.
-  virtual std::vector<DiscLoad> loads() const = 0;
+  /// Load of each body over the last step, in the order of before_sweep.
+  virtual std::vector<BodyLoad> loads() const = 0;
 
   /// State that a checkpoint must keep.
   virtual std::vector<double> memory() const { return {}; }
@@ -36,14 +36,14 @@ class BodyScheme {
 
 /// What a scheme needs to know of the fluid.
 struct SchemeParameters {
-  Vec2 half_force{0.0, 0.0};        ///< half the body force on a cell: rho u = Σ c f + F/2
+  Vec3 half_force;                  ///< half the body force on a cell: rho u = Σ c f + F/2
   double spring_stiffness = 0.001;  ///< of the spring scheme, force a surface element and stretch
 };
 
-/// @param name  one of known_schemes() without the first
+/// @param name  one of known_schemes() without the first; in three dimensions links only
 /// @throws std::invalid_argument naming the known ones
 std::unique_ptr<BodyScheme> make_scheme(const std::string& name, const Domain& domain,
-                                        const SchemeParameters& parameters);
+                                        const Lattice& lattice, const SchemeParameters& parameters);
 /// "immersed_moving_boundary" and the passes.
 std::vector<std::string> known_schemes();
 

@@ -25,7 +25,7 @@ Cell next(const Cell& c, int direction) {
 
 }  // namespace
 
-BoundaryTrace trace_boundary(const Vec2& centre, double radius) {
+BoundaryTrace trace_boundary(const Vec3& centre, double radius) {
   const auto inside = [&](const Cell& c) {
     const double dx = c.x + 0.5 - centre.x(), dy = c.y + 0.5 - centre.y();
     return dx * dx + dy * dy < radius * radius;

@@ -21,6 +21,6 @@ struct BoundaryTrace {
 };
 
 /// @param centre, radius  in cells; a cell is inside where its centre is; radius at least 1.5
-BoundaryTrace trace_boundary(const Vec2& centre, double radius);
+BoundaryTrace trace_boundary(const Vec3& centre, double radius);
 
 }  // namespace lbm

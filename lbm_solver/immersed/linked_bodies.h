@@ -27,43 +27,50 @@ enum class WallPlace {
 class LinkedBodies final : public BodyScheme {
  public:
   /// @param body_force  on a cell; the solid takes that of the cells that it holds
-  LinkedBodies(const Domain& domain, WallPlace place, const Vec2& body_force);
+  LinkedBodies(const Domain& domain, const Lattice& lattice, WallPlace place,
+               const Vec3& body_force);
 
-  void before_sweep(std::span<const Disc> discs, Populations& f,
+  void before_sweep(std::span<const Body> bodies, Populations& f,
                     const EsotericPull& stream) override;
   void after_sweep(Populations& f, const EsotericPull& stream) override;
-  std::vector<DiscLoad> loads() const override { return loads_; }
+  std::vector<BodyLoad> loads() const override { return loads_; }
 
  private:
   struct Link {
-    int x, y, q;  ///< fluid cell, and direction from the solid to it
-    int solid_x, solid_y;
-    int disc;
+    Cell3 cell;  ///< of fluid
+    int q;       ///< direction from the solid to it
+    Cell3 solid;
+    int body;
     double delta;
-    Vec2 arm;  ///< from the disc's centre to the cut
+    Vec3 arm;  ///< from the body's centre to the cut
   };
-  using Owners = std::vector<std::int32_t>;  // [cell] disc that holds the cell's centre, or -1
+  using Owners = std::vector<std::int32_t>;  // [cell] body that holds the cell's centre, or -1
 
   Owners find_owners() const;
   void find_links();
   void change_cells(const Owners& before, Populations& f, const EsotericPull& stream);
   double incoming(const Link& link, const Populations& f, const EsotericPull& stream) const;
-  /// Cell (x, y), brought back through periodic sides; false beyond a wall.
-  bool inside(int& x, int& y) const;
-  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * domain_.nx + x; }
-  /// Shortest vector from the disc's centre, or an image of it, to a cell's centre.
-  Vec2 arm(const Disc& disc, int x, int y) const;
-  Vec2 velocity(const Disc& disc, const Vec2& arm) const;
+  /// Brings a cell back through periodic sides; false beyond a wall.
+  bool inside(Cell3& cell) const;
+  Cell3 beside(const Cell3& cell, int q) const;
+  std::size_t index(const Cell3& c) const {
+    return (static_cast<std::size_t>(c[2]) * domain_.ny + c[1]) * domain_.nx + c[0];
+  }
+  template <class F>
+  void each_cell(F&& f) const;
+  /// Shortest vector from the body's centre, or an image of it, to a cell's centre.
+  Vec3 arm(const Body& body, const Cell3& cell) const;
 
   Domain domain_;
+  const Lattice& lattice_;
   WallPlace place_;
-  Vec2 body_force_;
-  std::vector<Disc> discs_;
+  Vec3 body_force_;
+  std::vector<Body> bodies_;
   std::vector<std::int64_t> ids_before_;
   Owners owners_;
   std::vector<Link> links_;
   std::vector<double> arriving_;  // [link]
-  std::vector<DiscLoad> loads_;
+  std::vector<BodyLoad> loads_;
 };
 
 }  // namespace lbm

@@ -16,15 +16,15 @@ namespace lbm {
 /// The force acts on the populations that have arrived, as a shift by the difference of two
 /// equilibria [Kupershtokh2004]; u there is the velocity with half of the force, as in Guo's
 /// scheme. The fluid inside a body moves like the rest, so that its inertia is part of the load, as
-/// with covered cells.
+/// with covered cells. In two dimensions only.
 class MarkedBodies : public BodyScheme {
  public:
   MarkedBodies(const Domain& domain, const SchemeParameters& parameters)
       : domain_(domain), parameters_(parameters) {}
 
-  void before_sweep(std::span<const Disc> discs, Populations& f,
+  void before_sweep(std::span<const Body> bodies, Populations& f,
                     const EsotericPull& stream) override;
-  std::vector<DiscLoad> loads() const override { return loads_; }
+  std::vector<BodyLoad> loads() const override { return loads_; }
 
  protected:
   /// One cell in reach of a marker.
@@ -33,30 +33,26 @@ class MarkedBodies : public BodyScheme {
     double weight;  ///< D
   };
   struct Marker {
-    Vec2 arm;  ///< from the disc's centre
+    Vec3 arm;  ///< from the disc's centre
     std::vector<Reach> reach;
   };
-  /// The markers of a disc where it is now.
-  struct Body {
-    Disc disc;
+  /// A disc and its markers where it is now.
+  struct Marked {
+    Body body;
     double element = 0.0;  ///< length of surface of a marker
     std::vector<Marker> markers;
   };
 
   /// Change of velocity that each marker asks for, twice the half of the force: [marker].
-  virtual std::vector<Vec2> changes(const Body& body, const std::vector<Vec2>& slip) = 0;
+  virtual std::vector<Vec3> changes(const Marked& marked, const std::vector<Vec3>& slip) = 0;
   /// A body has new places for its markers.
-  virtual void moved(const Body&) {}
-
-  static Vec2 wall_velocity(const Disc& disc, const Vec2& arm) {
-    return disc.velocity + disc.spin * Vec2(-arm.y(), arm.x());
-  }
+  virtual void moved(const Marked&) {}
 
  private:
-  void mark(Body& body) const;
-  void add_reach(Marker& marker, const Vec2& place) const;
-  Vec2 velocity(std::int32_t cell, const Populations& f, const EsotericPull& stream) const;
-  void shift(std::int32_t cell, const Vec2& change, Populations& f,
+  void mark(Marked& marked) const;
+  void add_reach(Marker& marker, const Vec3& place) const;
+  Vec3 velocity(std::int32_t cell, const Populations& f, const EsotericPull& stream) const;
+  void shift(std::int32_t cell, const Vec3& change, Populations& f,
              const EsotericPull& stream) const;
 
   Domain domain_;
@@ -65,8 +61,8 @@ class MarkedBodies : public BodyScheme {
   SchemeParameters parameters_;
 
  private:
-  std::vector<Body> bodies_;
-  std::vector<DiscLoad> loads_;
+  std::vector<Marked> marked_;
+  std::vector<BodyLoad> loads_;
 };
 
 /// Implicit velocity correction [WuShu2009], the comparator of paper A: the δu_k are such that the
@@ -78,8 +74,8 @@ class ImplicitMarkers final : public MarkedBodies {
   using MarkedBodies::MarkedBodies;
 
  private:
-  std::vector<Vec2> changes(const Body& body, const std::vector<Vec2>& slip) override;
-  void moved(const Body& body) override;
+  std::vector<Vec3> changes(const Marked& marked, const std::vector<Vec3>& slip) override;
+  void moved(const Marked& marked) override;
   std::map<std::int64_t, Eigen::LDLT<Eigen::MatrixXd>> systems_;  // by disc id
 };
 
@@ -92,8 +88,8 @@ class SpringMarkers final : public MarkedBodies {
   void restore(const std::vector<double>& memory) override;
 
  private:
-  std::vector<Vec2> changes(const Body& body, const std::vector<Vec2>& slip) override;
-  std::map<std::int64_t, std::vector<Vec2>> stretch_;  // by disc id
+  std::vector<Vec3> changes(const Marked& marked, const std::vector<Vec3>& slip) override;
+  std::map<std::int64_t, std::vector<Vec3>> stretch_;  // by disc id
 };
 
 }  // namespace lbm

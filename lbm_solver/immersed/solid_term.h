@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lbm_solver/collision/equilibrium.h"
+#include "lbm_solver/collision/forcing.h"
 #include "lbm_solver/immersed/weight.h"
 
 namespace lbm {
@@ -35,40 +35,37 @@ std::vector<std::string> known_solid_terms();
 
 /// f_i^eq(rho, u) times one factor plus f_i^eq(rho, u_s) times another, as halves of pairs, for the
 /// cost of about one equilibrium: only the second moments a u u + b u_s u_s and the momenta differ.
-template <class V>
+template <class L, class V>
 class TwoEquilibria {
  public:
   struct Factors {
     V fluid, solid;
   };
-  [[gnu::always_inline]] TwoEquilibria(const V& drho, const V& ux, const V& uy, const V& us,
-                                       const V& vs, const Factors& even, const Factors& odd) {
+  [[gnu::always_inline]] TwoEquilibria(const V& drho, const Vector<L, V>& u, const Vector<L, V>& us,
+                                       const Factors& even, const Factors& odd) {
     const V rho = drho + V(1.0);
     const V a = rho * even.fluid, b = rho * even.solid;
-    xx_ = a * ux * ux + b * us * us;
-    yy_ = a * uy * uy + b * vs * vs;
-    xy_ = a * ux * uy + b * us * vs;
-    base_ = (even.fluid + even.solid) * drho - V(1.5) * (xx_ + yy_);
-    jx_ = rho * (odd.fluid * ux + odd.solid * us);
-    jy_ = rho * (odd.fluid * uy + odd.solid * vs);
+    Symmetric<L, V>::each_pair([&](auto k, auto l) __attribute__((always_inline)) {
+      stress_.template get<k, l>() = a * u[k] * u[l] + b * us[k] * us[l];
+    });
+    base_ = (even.fluid + even.solid) * drho - V(1.5) * stress_.trace();
+    unroll<L::D>([&](auto k) __attribute__((always_inline)) {
+      j_[k] = rho * (odd.fluid * u[k] + odd.solid * us[k]);
+    });
   }
 
-  [[gnu::always_inline]] V rest() const { return V(D2Q9::w[0]) * base_; }
+  [[gnu::always_inline]] V rest() const { return V(L::w[0]) * base_; }
 
   template <int i>
   [[gnu::always_inline]] lbm::Halves<V> pair() const {
-    V stress;
-    if constexpr (D2Q9::c[i][1] == 0)
-      stress = xx_;
-    else if constexpr (D2Q9::c[i][0] == 0)
-      stress = yy_;
-    else
-      stress = xx_ + yy_ + V(2.0 * D2Q9::c[i][0] * D2Q9::c[i][1]) * xy_;
-    return {V(D2Q9::w[i]) * (base_ + V(4.5) * stress), V(3.0 * D2Q9::w[i]) * along<i>(jx_, jy_)};
+    return {V(L::w[i]) * (base_ + V(4.5) * stress_.template along<i>()),
+            V(3.0 * L::w[i]) * along<L, i>(j_)};
   }
 
  private:
-  V xx_, yy_, xy_, base_, jx_, jy_;
+  Symmetric<L, V> stress_;
+  V base_;
+  Vector<L, V> j_;
 };
 
 /// Immersed-moving-boundary collision of a covered cell:
@@ -84,27 +81,23 @@ class CoveredCollision {
   CoveredCollision(const SolidTerm& term, WeightRule rule)
       : term_(term), resistance_(rule == WeightRule::Viscous ? 1.0 : 0.0) {}
 
-  template <class V>
-  struct Force {
-    V x, y;  ///< on the solid, lattice units
-  };
-
   /// What the cover map knows of a cell.
-  template <class V>
+  template <class L, class V>
   struct Cell {
-    V weight;  ///< B; the solid fraction where the viscosity differs from cell to cell
-    V layer;   ///< 1 surface, 0 whole, -1 core
-    V us, vs;  ///< solid velocity at the cell centre, lattice units
+    V weight;         ///< B; the solid fraction where the viscosity differs from cell to cell
+    V layer;          ///< 1 surface, 0 whole, -1 core
+    Vector<L, V> us;  ///< solid velocity at the cell centre, lattice units
   };
 
   /// @param f        populations [q] that arrived; overwritten
   /// @param collide  the operator of pure fluid
-  template <class V, class Collision>
-  [[gnu::always_inline]] Force<V> apply(V (&f)[D2Q9::Q], const Collision& collide,
-                                        const Cell<V>& cell) const {
-    const Moments<V> m = moments(f);
-    const V rho = m.drho + V(1.0), inverse = V(1.0) / rho;
-    const V ux = m.jx * inverse, uy = m.jy * inverse;
+  /// @return the force on the solid, lattice units
+  template <class L, class V, class Collision>
+  [[gnu::always_inline]] Vector<L, V> apply(V (&f)[L::Q], const Collision& collide,
+                                            const Cell<L, V>& cell) const {
+    const Moments<L, V> m = moments<L>(f);
+    const V rho = m.drho + V(1.0);
+    const Vector<L, V> u = velocity<L>(m, NoForce<L>({}));
     V weight = cell.weight;
     if constexpr (Collision::turbulent) {
       const V s = collide.relaxation_time(f, m) - V(0.5);
@@ -122,10 +115,10 @@ class CoveredCollision {
     using Half = SolidTerm::Halves;
     using Part = SolidTerm::Parts;
     V even_f = pick(&Part::f, &Half::even), odd_f = pick(&Part::f, &Half::odd);
-    typename TwoEquilibria<V>::Factors even{pick(&Part::fluid, &Half::even),
-                                            pick(&Part::solid, &Half::even)};
-    typename TwoEquilibria<V>::Factors odd{pick(&Part::fluid, &Half::odd),
-                                           pick(&Part::solid, &Half::odd)};
+    typename TwoEquilibria<L, V>::Factors even{pick(&Part::fluid, &Half::even),
+                                               pick(&Part::solid, &Half::even)};
+    typename TwoEquilibria<L, V>::Factors odd{pick(&Part::fluid, &Half::odd),
+                                              pick(&Part::solid, &Half::odd)};
     const V strength = odd.solid * rho;
     if constexpr (Collision::constant_rates) {
       // The fluid's part is a relaxation too, with (1-B) times its rates.
@@ -135,9 +128,9 @@ class CoveredCollision {
       even.fluid += even_rate;
       odd_f -= odd_rate;
       odd.fluid += odd_rate;
-      const TwoEquilibria<V> eq(m.drho, ux, uy, cell.us, cell.vs, even, odd);
+      const TwoEquilibria<L, V> eq(m.drho, u, cell.us, even, odd);
       f[0] += even_f * f[0] + eq.rest();
-      unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
+      unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
         constexpr int i = 2 * p + 1;
         const lbm::Halves<V> e = eq.template pair<i>();
         const V even_gain = even_f * (V(0.5) * (f[i] + f[i + 1])) + e.even;
@@ -146,15 +139,15 @@ class CoveredCollision {
         f[i + 1] += even_gain - odd_gain;
       });
     } else {
-      V fluid[D2Q9::Q];
-      unroll<D2Q9::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
+      V fluid[L::Q];
+      unroll<L::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
       collide(fluid);
       even_f += weight;
       odd_f += weight;
       const V rest = V(1.0) - weight;
-      const TwoEquilibria<V> eq(m.drho, ux, uy, cell.us, cell.vs, even, odd);
+      const TwoEquilibria<L, V> eq(m.drho, u, cell.us, even, odd);
       f[0] = rest * fluid[0] + even_f * f[0] + eq.rest();
-      unroll<D2Q9::pairs>([&](auto p) __attribute__((always_inline)) {
+      unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
         constexpr int i = 2 * p + 1;
         const lbm::Halves<V> e = eq.template pair<i>();
         const V even_part = even_f * (V(0.5) * (f[i] + f[i + 1])) + e.even;
@@ -163,11 +156,11 @@ class CoveredCollision {
         f[i + 1] = rest * fluid[i + 1] + even_part - odd_part;
       });
     }
-    Force<V> force{strength * (ux - cell.us), strength * (uy - cell.vs)};
-    if constexpr (Collision::forced) {
-      force.x += weight * V(collide.force().x());
-      force.y += weight * V(collide.force().y());
-    }
+    Vector<L, V> force;
+    unroll<L::D>([&](auto a) __attribute__((always_inline)) {
+      force[a] = strength * (u[a] - cell.us[a]);
+      if constexpr (Collision::forced) force[a] += weight * V(collide.force()[a]);
+    });
     return force;
   }
 

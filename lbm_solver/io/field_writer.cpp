@@ -47,13 +47,15 @@ std::string group_name(std::size_t index) {
 
 }  // namespace
 
-FieldWriter::FieldWriter(const std::string& folder, const Units& units, double keep_until)
-    : folder_(folder), units_(units) {
+FieldWriter::FieldWriter(const std::string& folder, const Units& units, int dimension,
+                         double keep_until)
+    : folder_(folder), units_(units), dimension_(dimension) {
   if (keep_until > 0.0 && keep_frames(keep_until)) return;
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Create);
   protocol::hdf5::set_attribute(file, "cell", units.dx);
   protocol::hdf5::set_attribute(file, "origin_x", units.origin.x());
   protocol::hdf5::set_attribute(file, "origin_y", units.origin.y());
+  if (dimension == 3) protocol::hdf5::set_attribute(file, "origin_z", units.origin.z());
 }
 
 /// Finds the frames of the run before; those from `until` on are written again.
@@ -78,18 +80,20 @@ bool FieldWriter::keep_frames(double until) {
     const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
     const double time = protocol::hdf5::real_attribute(group, "time");
     if (time >= until) break;
-    const auto rows = [&](const char* name) -> std::array<hsize_t, 2> {
-      if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0};
+    const auto rows = [&](const char* name) -> std::array<hsize_t, 3> {
+      if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0, 0};
       const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open ") + name);
       const Handle space(H5Dget_space(set), H5Sclose, "read a space");
-      std::array<hsize_t, 2> shape{0, 0};
+      std::array<hsize_t, 3> shape{0, 0, 0};
       check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read a size");
       return shape;
     };
     const auto cells = rows("pressure");
-    entries_.push_back({time, static_cast<int>(cells[1]), static_cast<int>(cells[0]),
-                        rows("solid_fraction")[0] > 0, rows("particles")[0],
-                        rows("bond_state")[0]});
+    const auto along = [&](int axis) {  // x last
+      return axis < dimension_ ? static_cast<int>(cells[dimension_ - 1 - axis]) : 1;
+    };
+    entries_.push_back({time, along(0), along(1), along(2), rows("solid_fraction")[0] > 0,
+                        rows("particles")[0], rows("bond_state")[0]});
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
@@ -104,28 +108,48 @@ void FieldWriter::write(const FieldFrame& f) {
   const Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                      H5Gclose, "create " + name);
   protocol::hdf5::set_attribute(group, "time", f.time);
-  const hsize_t nx = f.nx, ny = f.ny;
-  write_array(group, "pressure", f.pressure, {ny, nx});
-  write_array(group, "velocity", f.velocity, {ny, nx, 3});
-  if (!f.solid_fraction.empty()) write_array(group, "solid_fraction", f.solid_fraction, {ny, nx});
-  write_array(group, "particles", f.particles, {f.particles.size() / 8, 8});
-  const hsize_t bonds = f.bond_state.size();
+  const auto d = static_cast<std::size_t>(dimension_);
+  const std::size_t count = f.particles.size() / columns(), bonds = f.bond_state.size();
+  const Entry entry{f.time, f.nx, f.ny, f.nz, !f.solid_fraction.empty(), count, bonds};
+  std::vector<hsize_t> cells;
+  for (const auto n : shape(entry)) cells.push_back(n);
+  std::vector<hsize_t> vectors = cells;
+  vectors.push_back(3);
+  write_array(group, "pressure", f.pressure, cells);
+  write_array(group, "velocity", f.velocity, vectors);
+  if (entry.solids) write_array(group, "solid_fraction", f.solid_fraction, cells);
+  write_array(group, "particles", f.particles, {count, columns()});
   if (bonds > 0) {
-    write_array(group, "bond_ends", f.bond_ends, {2 * bonds, 2});
+    write_array(group, "bond_ends", f.bond_ends, {2 * bonds, d});
     write_array(group, "bond_state", f.bond_state, {bonds});
   }
   if (!f.particles.empty()) {  // by columns, as ParaView wants them
     std::vector<double> places, radius;
-    for (std::size_t i = 0; i < f.particles.size(); i += 8) {
-      places.insert(places.end(), {f.particles[i + 1], f.particles[i + 2]});
-      radius.push_back(f.particles[i + 3]);
+    for (const double* p = f.particles.data(); radius.size() < count; p += columns()) {
+      places.insert(places.end(), p + 1, p + 1 + d);
+      radius.push_back(p[1 + d]);
     }
-    write_array(group, "particle_places", places, {radius.size(), 2});
+    write_array(group, "particle_places", places, {radius.size(), d});
     write_array(group, "particle_radius", radius, {radius.size()});
   }
-  entries_.push_back(
-      {f.time, f.nx, f.ny, !f.solid_fraction.empty(), f.particles.size() / 8, bonds});
+  entries_.push_back(entry);
   write_xdmf();
+}
+
+/// Cells of a frame, x last.
+std::vector<unsigned long long> FieldWriter::shape(const Entry& e) const {
+  std::vector<unsigned long long> n;
+  if (dimension_ == 3) n.push_back(e.nz);
+  n.push_back(e.ny);
+  n.push_back(e.nx);
+  return n;
+}
+
+/// The same as text, each number larger by `more`.
+std::string FieldWriter::shape_text(const Entry& e, int more) const {
+  std::string text;
+  for (const auto n : shape(e)) text += fmt::format("{}{}", text.empty() ? "" : " ", n + more);
+  return text;
 }
 
 namespace {
@@ -141,21 +165,27 @@ std::string item(const std::string& path, const std::string& shape, int precisio
 
 std::string FieldWriter::fluid_grid(std::size_t index) const {
   const Entry& e = entries_[index];
+  std::string origin, spacing;
+  for (int axis = dimension_ - 1; axis >= 0; --axis) {
+    origin += fmt::format("{:.9g} ", units_.origin[axis]);
+    spacing += fmt::format("{:.9g} ", units_.dx);
+  }
   std::string out = fmt::format(
       R"(<Grid><Time Value="{:.9g}"/>
-  <Topology TopologyType="2DCoRectMesh" Dimensions="{} {}"/>
-  <Geometry GeometryType="ORIGIN_DXDY"><DataItem Format="XML" Dimensions="2">{:.9g} {:.9g}</DataItem>)"
-      R"(<DataItem Format="XML" Dimensions="2">{:.9g} {:.9g}</DataItem></Geometry>
+  <Topology TopologyType="{}DCoRectMesh" Dimensions="{}"/>
+  <Geometry GeometryType="{}"><DataItem Format="XML" Dimensions="{}">{}</DataItem>)"
+      R"(<DataItem Format="XML" Dimensions="{}">{}</DataItem></Geometry>
 )",
-      e.time, e.ny + 1, e.nx + 1, units_.origin.y(), units_.origin.x(), units_.dx, units_.dx);
+      e.time, dimension_, shape_text(e, 1), dimension_ == 2 ? "ORIGIN_DXDY" : "ORIGIN_DXDYDZ",
+      dimension_, origin, dimension_, spacing);
   const auto attribute = [&](const char* name, const char* kind, const std::string& shape) {
     out += fmt::format(
         "  <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n", name,
         kind, item(group_name(index) + "/" + name, shape, 4));
   };
-  attribute("pressure", "Scalar", fmt::format("{} {}", e.ny, e.nx));
-  attribute("velocity", "Vector", fmt::format("{} {} 3", e.ny, e.nx));
-  if (e.solids) attribute("solid_fraction", "Scalar", fmt::format("{} {}", e.ny, e.nx));
+  attribute("pressure", "Scalar", shape_text(e, 0));
+  attribute("velocity", "Vector", shape_text(e, 0) + " 3");
+  if (e.solids) attribute("solid_fraction", "Scalar", shape_text(e, 0));
   return out + "</Grid>\n";
 }
 
@@ -164,9 +194,10 @@ std::string FieldWriter::particle_grid(std::size_t index) const {
   const std::string group = group_name(index), n = fmt::format("{}", e.particles);
   return fmt::format(
       "<Grid><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyvertex\" "
-      "NumberOfElements=\"{}\"/>\n  <Geometry GeometryType=\"XY\">{}</Geometry>\n"
+      "NumberOfElements=\"{}\"/>\n  <Geometry GeometryType=\"{}\">{}</Geometry>\n"
       "  <Attribute Name=\"radius\" Center=\"Node\">{}</Attribute>\n</Grid>\n",
-      e.time, n, item(group + "/particle_places", n + " 2", 8),
+      e.time, n, dimension_ == 2 ? "XY" : "XYZ",
+      item(group + "/particle_places", fmt::format("{} {}", n, dimension_), 8),
       item(group + "/particle_radius", n, 8));
 }
 
@@ -178,10 +209,10 @@ std::string FieldWriter::bond_grid(std::size_t index) const {
   return fmt::format(
       "<Grid><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
       "NumberOfElements=\"{}\"><DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"{} 2\">{}"
-      "</DataItem></Topology>\n  <Geometry GeometryType=\"XY\">{}</Geometry>\n"
+      "</DataItem></Topology>\n  <Geometry GeometryType=\"{}\">{}</Geometry>\n"
       "  <Attribute Name=\"broken\" Center=\"Cell\">{}</Attribute>\n</Grid>\n",
-      e.time, e.bonds, e.bonds, nodes,
-      item(group + "/bond_ends", fmt::format("{} 2", 2 * e.bonds), 8),
+      e.time, e.bonds, e.bonds, nodes, dimension_ == 2 ? "XY" : "XYZ",
+      item(group + "/bond_ends", fmt::format("{} {}", 2 * e.bonds, dimension_), 8),
       item(group + "/bond_state", fmt::format("{}", e.bonds), 8));
 }
 

@@ -12,13 +12,15 @@ namespace lbm {
 /// One picture of the fluid and its particles, SI units.
 struct FieldFrame {
   double time = 0.0;  ///< [s]
-  int nx = 0, ny = 0;
-  std::vector<float> pressure;        ///< [ny][nx], against rest and hydrostatic [Pa]
-  std::vector<float> velocity;        ///< [ny][nx][3] [m/s]
-  std::vector<float> solid_fraction;  ///< [ny][nx]; empty without solids
-  std::vector<double> particles;      ///< [n][8]: id, x, y, radius, vx, vy, omega, type
-  std::vector<double> bond_ends;      ///< [n][2][2]: x, y of both centres [m]
-  std::vector<double> bond_state;     ///< [n]: 0 intact, 1 broken by tension, 2 by shear
+  int nx = 0, ny = 0, nz = 1;
+  std::vector<float> pressure;        ///< [nz][ny][nx], against rest and hydrostatic [Pa]
+  std::vector<float> velocity;        ///< [nz][ny][nx][3] [m/s]
+  std::vector<float> solid_fraction;  ///< [nz][ny][nx]; empty without solids
+  /// [n][8]: id, x, y, radius, vx, vy, omega, type; in three dimensions [n][12]: id, x, y, z,
+  /// radius, vx, vy, vz, omega x, y, z, type.
+  std::vector<double> particles;
+  std::vector<double> bond_ends;   ///< [n][2][dimension]: of both centres [m]
+  std::vector<double> bond_state;  ///< [n]: 0 intact, 1 broken by tension, 2 by shear
 };
 
 /// Writes frames to `fields.h5` and keeps `fields.xdmf` beside it, which ParaView opens. The file
@@ -28,7 +30,8 @@ class FieldWriter {
  public:
   /// @param folder      must exist
   /// @param keep_until  a run that goes on keeps the frames before this time
-  FieldWriter(const std::string& folder, const Units& units, double keep_until = 0.0);
+  FieldWriter(const std::string& folder, const Units& units, int dimension = 2,
+              double keep_until = 0.0);
   void write(const FieldFrame& frame);
 
  private:
@@ -39,12 +42,17 @@ class FieldWriter {
   bool keep_frames(double until);
   struct Entry {
     double time;
-    int nx, ny;
+    int nx, ny, nz;
     bool solids;
     std::size_t particles, bonds;
   };
+  std::vector<unsigned long long> shape(const Entry& entry) const;
+  std::string shape_text(const Entry& entry, int more) const;
+  std::size_t columns() const { return dimension_ == 2 ? 8 : 12; }
+
   std::string folder_;
   Units units_;
+  int dimension_;
   std::vector<Entry> entries_;
 };
 

@@ -11,6 +11,7 @@ Log::Log(const std::string& folder, Progress progress)
 }
 
 void Log::write(const std::string& line) {
+  if (!file_) return;
   if (line_open_) std::fputs("\n", stdout);
   line_open_ = false;
   fmt::print("{}\n", line);

@@ -18,6 +18,8 @@ class Log {
   enum class Progress { Line, Tenths, None };
 
   Log(const std::string& folder, Progress progress);
+  /// Says nothing: for the ranks beside the first.
+  Log() = default;
 
   template <class... Args>
   void say(std::int64_t step, const char* part, fmt::format_string<Args...> format,
@@ -37,7 +39,7 @@ class Log {
     void operator()(std::FILE* f) const { std::fclose(f); }
   };
   std::unique_ptr<std::FILE, Close> file_;
-  Progress progress_;
+  Progress progress_ = Progress::None;
   int tenth_ = 0;
   bool line_open_ = false;
 };

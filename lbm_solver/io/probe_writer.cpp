@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "lbm_solver/base/errors.h"
@@ -36,8 +37,12 @@ void CsvWriter::row(std::initializer_list<double> values) {
   fmt::print(file_.get(), "\n");
 }
 
-ProbeWriter::ProbeWriter(const std::string& folder, double keep_until)
-    : table_(folder + "/probes.csv", "time,id,x,y,vx,vy,omega,fx,fy,torque", keep_until) {}
+ProbeWriter::ProbeWriter(const std::string& folder, int dimension, double keep_until)
+    : dimension_(dimension),
+      table_(folder + "/probes.csv",
+             dimension == 2 ? "time,id,x,y,vx,vy,omega,fx,fy,torque"
+                            : "time,id,x,y,z,vx,vy,vz,wx,wy,wz,fx,fy,fz,tx,ty,tz",
+             keep_until) {}
 
 void ProbeWriter::write(double time, std::span<const protocol::Particle> particles,
                         std::span<const protocol::Load> loads) {
@@ -46,8 +51,13 @@ void ProbeWriter::write(double time, std::span<const protocol::Particle> particl
     const protocol::State& s = particles[i].state;
     const protocol::Load load =
         loads.empty() ? protocol::Load{s.id, {none, none, none}, {none, none, none}} : loads[i];
-    table_.row({time, static_cast<double>(s.id), s.x[0], s.x[1], s.v[0], s.v[1], s.omega[2],
-                load.force[0], load.force[1], load.torque[2]});
+    const auto& [x, v, w, f, t] = std::tie(s.x, s.v, s.omega, load.force, load.torque);
+    const auto id = static_cast<double>(s.id);
+    if (dimension_ == 2)
+      table_.row({time, id, x[0], x[1], v[0], v[1], w[2], f[0], f[1], t[2]});
+    else
+      table_.row({time, id, x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2], f[0], f[1], f[2],
+                  t[0], t[1], t[2]});
   }
   table_.flush();
 }

@@ -32,12 +32,13 @@ class CsvWriter {
 /// load it received over it. SI units.
 class ProbeWriter {
  public:
-  ProbeWriter(const std::string& folder, double keep_until);
+  ProbeWriter(const std::string& folder, int dimension, double keep_until);
   /// @param loads  same order as the particles; empty at the last state
   void write(double time, std::span<const protocol::Particle> particles,
              std::span<const protocol::Load> loads);
 
  private:
+  int dimension_;
   CsvWriter table_;
 };
 

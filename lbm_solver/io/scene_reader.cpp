@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -45,36 +46,39 @@ SideKind side(TableReader& t, const std::string& key) {
 
 BoxScene read_box(TableReader t) {
   BoxScene box;
-  box.size = t.vector("size", "[m]");
-  if (box.size.minCoeff() <= 0.0)
-    t.fail("size", fmt::format("= [{}, {}] is not positive", box.size.x(), box.size.y()),
-           "give the lengths of the box [x, y] in m");
-  box.origin = t.vector_or("origin", {0.0, 0.0}, "[m]");
+  const int d = box.dimension = t.length_of("size") == 3 ? 3 : 2;
+  box.size = t.vector("size", d, "[m], or three lengths for a scene in three dimensions");
+  for (int a = 0; a < d; ++a)
+    if (!(box.size[a] > 0.0))
+      t.fail("size", fmt::format("holds {}, which is not positive", box.size[a]),
+             "give the lengths of the box [x, y] or [x, y, z] in m");
+  box.origin = t.vector_or_zero("origin", d, "[m]");
+  if (d == 3 && t.has("depth")) t.fail("depth", "is of no use in three dimensions", "leave it out");
   box.depth = t.number_or("depth", 1.0, Bounds::positive(), "m");
-  box.x = side(t, "sides_x");
-  box.y = side(t, "sides_y");
-  box.pressure_jump = t.vector_or("pressure_jump", {0.0, 0.0}, "[Pa]");
-  const SideKind kinds[] = {box.x, box.y};
-  for (int k = 0; k < 2; ++k)
-    if (box.pressure_jump[k] != 0.0 && kinds[k] == SideKind::Wall)
+  box.sides[0] = side(t, "sides_x");
+  box.sides[1] = side(t, "sides_y");
+  if (d == 3) box.sides[2] = side(t, "sides_z");
+  box.pressure_jump = t.vector_or_zero("pressure_jump", d, "[Pa]");
+  for (int k = 0; k < d; ++k)
+    if (box.pressure_jump[k] != 0.0 && box.sides[k] == SideKind::Wall)
       t.fail("pressure_jump", "acts across sides that are not periodic",
              "make the sides periodic, or give [[boundary]] pressures");
   t.finish();
   return box;
 }
 
-FluidScene read_fluid(TableReader t) {
+FluidScene read_fluid(TableReader t, int d) {
   FluidScene fluid;
   fluid.density = t.number("density", Bounds::positive(), "kg/m³");
   fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
-  fluid.gravity = t.vector_or("gravity", {0.0, 0.0}, "[m/s²]");
-  fluid.body_force = t.vector_or("body_force", {0.0, 0.0}, "[m/s²]");
+  fluid.gravity = t.vector_or_zero("gravity", d, "[m/s²]");
+  fluid.body_force = t.vector_or_zero("body_force", d, "[m/s²]");
   fluid.velocity_scale = t.number("velocity_scale", Bounds::positive(), "m/s");
   t.finish();
   return fluid;
 }
 
-NumericsScene read_numerics(TableReader t) {
+NumericsScene read_numerics(TableReader t, int d) {
   NumericsScene n;
   n.cell = t.optional_number("cell", Bounds::positive(), "m");
   n.cells_per_diameter = t.optional_number("cells_per_diameter", {2.0, 10000.0}, "cells");
@@ -82,6 +86,10 @@ NumericsScene read_numerics(TableReader t) {
     t.fail("cell", n.cell ? "stands beside cells_per_diameter" : "is missing",
            "give either cell [m] or cells_per_diameter");
   n.time_step = t.optional_number("time_step", Bounds::positive(), "s");
+  n.lattice = t.choice_or("lattice", n.lattice,
+                          d == 2 ? std::vector<std::string>{"auto", "D2Q9"}
+                                 : std::vector<std::string>{"auto", "D3Q19", "D3Q27"});
+  n.single = t.choice_or("precision", "double", {"double", "single"}) == "single";
   n.collision = t.choice_or("collision", n.collision,
                             {"auto", "bgk", "trt", "central_moment", "recursive_regularised"});
   n.solid_term = t.choice_or("solid_term", n.solid_term,
@@ -99,12 +107,12 @@ NumericsScene read_numerics(TableReader t) {
   return n;
 }
 
-ParticleScene read_particles(TableReader t) {
+ParticleScene read_particles(TableReader t, int d) {
   ParticleScene p;
   p.diameter = t.range("diameter", Bounds::positive(), "m");
   p.density = t.range("density", Bounds::positive(), "kg/m³");
   p.hydraulic_ratio = t.numbers_or("hydraulic_ratio", p.hydraulic_ratio, {0.1, 1.0}, "");
-  p.start = t.vectors_or_none("start", "[m]");
+  p.start = t.vectors_or_none("start", d, "[m]");
   p.contact_stiffness = t.optional_number("contact_stiffness", Bounds::positive(), "N/m");
   p.variables = t.optional_table("variables").all_as_text();
   t.finish();
@@ -128,32 +136,53 @@ CouplingScene read_coupling(TableReader t) {
   return c;
 }
 
+/// `from` and `to` along a side: a number, in three dimensions two.
+void read_extent(TableReader& t, const BoxScene& box, int axis, BoundaryScene& b) {
+  const int first = axis == 0 ? 1 : 0;
+  const auto low = [&](int a) { return box.origin[a]; };
+  const auto high = [&](int a) { return box.origin[a] + box.size[a]; };
+  if (box.dimension == 2) {
+    b.from[0] = t.optional_number("from", {low(first), high(first)}, "m");
+    b.to[0] = t.optional_number("to", {b.from[0].value_or(low(first)), high(first)}, "m");
+    return;
+  }
+  const int axes[] = {first, axis == 2 ? 1 : 2};
+  for (auto* end : {&b.from, &b.to}) {
+    const char* key = end == &b.from ? "from" : "to";
+    if (!t.has(key)) continue;
+    const Vec3 pair = t.vector(key, 2, "[m] along the side's two axes");
+    for (int k = 0; k < 2; ++k) {
+      if (pair[k] < low(axes[k]) || pair[k] > high(axes[k]))
+        t.fail(key, fmt::format("holds {} m, which is outside the side", pair[k]),
+               fmt::format("stay within {} … {} m", low(axes[k]), high(axes[k])));
+      (*end)[k] = pair[k];
+    }
+  }
+}
+
 BoundaryScene read_boundary(TableReader t, const BoxScene& box) {
   using Kind = BoundaryScene::Kind;
   BoundaryScene b;
-  if (!t.has("side")) t.fail("side", "is missing", "give left, right, bottom or top");
-  const std::string side = t.choice_or("side", "", {"left", "right", "bottom", "top"});
-  b.side = side == "left"     ? SideName::Left
-           : side == "right"  ? SideName::Right
-           : side == "bottom" ? SideName::Bottom
-                              : SideName::Top;
-  const bool vertical = b.side == SideName::Left || b.side == SideName::Right;
-  if ((vertical ? box.x : box.y) == SideKind::Periodic)
+  std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
+  sides.resize(2 * box.dimension);
+  if (!t.has("side"))
+    t.fail("side", "is missing", fmt::format("give one of: {}", fmt::join(sides, ", ")));
+  const std::string side = t.choice_or("side", "", sides);
+  b.side = static_cast<SideName>(std::find(sides.begin(), sides.end(), side) - sides.begin());
+  const int axis = axis_of(b.side);
+  if (box.sides[axis] == SideKind::Periodic)
     t.fail("side", "= \"" + side + "\" is periodic", "make the box's sides there \"wall\"");
   if (!t.has("kind"))
     t.fail("kind", "is missing", "give velocity, moving_wall, pressure or outflow");
   const std::string kind =
       t.choice_or("kind", "", {"velocity", "moving_wall", "pressure", "outflow"});
   b.kind = kind == "pressure" ? Kind::Pressure : kind == "outflow" ? Kind::Outflow : Kind::Velocity;
-  const int along = vertical ? 1 : 0;
-  const double lo = box.origin[along], hi = lo + box.size[along];
-  b.from = t.optional_number("from", {lo, hi}, "m");
-  b.to = t.optional_number("to", {b.from.value_or(lo), hi}, "m");
+  read_extent(t, box, axis, b);
   if (b.kind == Kind::Velocity) {
-    b.velocity = t.vector("velocity", "[m/s]");
+    b.velocity = t.vector("velocity", box.dimension, "[m/s]");
     b.parabolic = t.choice_or("profile", "uniform", {"uniform", "parabolic"}) == "parabolic";
     b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
-    if (kind == "moving_wall" && b.velocity[vertical ? 0 : 1] != 0.0)
+    if (kind == "moving_wall" && b.velocity[axis] != 0.0)
       t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
   } else {
     b.pressure = t.number_or("pressure", 0.0, {}, "Pa");
@@ -163,24 +192,27 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box) {
   return b;
 }
 
-ObstacleScene read_obstacle(TableReader t) {
+ObstacleScene read_obstacle(TableReader t, int d) {
   ObstacleScene o;
-  o.disc = t.has("centre");
-  if (o.disc) {
-    o.centre = t.vector("centre", "[m]");
+  o.round = t.has("centre");
+  if (o.round) {
+    o.centre = t.vector("centre", d, "[m]");
     o.diameter = t.number("diameter", Bounds::positive(), "m");
     o.hollow = t.flag_or("hollow", false);
-    o.spin = t.number_or("spin", 0.0, {}, "rad/s");
+    if (d == 3)
+      o.spin = t.vector_or_zero("spin", 3, "[rad/s]");
+    else
+      o.spin.z() = t.number_or("spin", 0.0, {}, "rad/s");
   } else {
-    o.from = t.vector("from", "[m], or centre and diameter of a disc");
-    o.to = t.vector("to", "[m]");
+    o.from = t.vector("from", d, "[m], or centre and diameter of a disc or sphere");
+    o.to = t.vector("to", d, "[m]");
   }
   t.finish();
   return o;
 }
 
-/// Discs at rest from a table `x,y,diameter` in m, beside the scene.
-void read_grains(TableReader t, const std::string& scene_file,
+/// Discs or spheres at rest from a table `x,y,diameter` or `x,y,z,diameter` in m, beside the scene.
+void read_grains(TableReader t, const std::string& scene_file, int d,
                  std::vector<ObstacleScene>& obstacles) {
   const std::string name = t.text_or("file", "");
   t.finish();
@@ -190,22 +222,27 @@ void read_grains(TableReader t, const std::string& scene_file,
   if (!table) t.fail("file", "= \"" + name + "\" cannot be read", "put it beside the scene");
   std::string line;
   std::getline(table, line);
-  if (line != "x,y,diameter")
-    t.fail("file", "begins with '" + line + "'", "the first line is x,y,diameter (in m)");
+  const std::string columns = d == 2 ? "x,y,diameter" : "x,y,z,diameter";
+  if (line != columns)
+    t.fail("file", "begins with '" + line + "'", "the first line is " + columns + " (in m)");
   for (int number = 2; std::getline(table, line); ++number) {
     ObstacleScene o;
-    o.disc = o.grain = true;
+    o.round = o.grain = true;
     char rest = 0;
-    if (std::sscanf(line.c_str(), "%lf,%lf,%lf%c", &o.centre.x(), &o.centre.y(), &o.diameter,
-                    &rest) != 3 ||
-        !(o.diameter > 0.0))
-      t.fail("file", fmt::format("line {}: '{}' is not three numbers", number, line),
-             "give x,y,diameter in m");
+    double v[4] = {0.0, 0.0, 0.0, 0.0};
+    const int read =
+        d == 2 ? std::sscanf(line.c_str(), "%lf,%lf,%lf%c", v, v + 1, v + 3, &rest)
+               : std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf%c", v, v + 1, v + 2, v + 3, &rest);
+    if (read != d + 1 || !(v[3] > 0.0))
+      t.fail("file", fmt::format("line {}: '{}' is not {} numbers", number, line, d + 1),
+             "give " + columns + " in m");
+    o.centre = {v[0], v[1], v[2]};
+    o.diameter = v[3];
     obstacles.push_back(o);
   }
 }
 
-InitialScene read_initial(TableReader t) {
+InitialScene read_initial(TableReader t, int d) {
   using Kind = InitialScene::Kind;
   InitialScene i;
   const std::string kind =
@@ -215,7 +252,7 @@ InitialScene read_initial(TableReader t) {
            : kind == "taylor_green" ? Kind::TaylorGreen
            : kind == "shear_layer"  ? Kind::ShearLayer
                                     : Kind::Rest;
-  i.velocity = t.vector_or("velocity", {0.0, 0.0}, "[m/s]");
+  i.velocity = t.vector_or_zero("velocity", d, "[m/s]");
   i.sharpness = t.number_or("sharpness", i.sharpness, Bounds::positive(), "");
   i.perturbation = t.number_or("perturbation", i.perturbation, Bounds::non_negative(), "");
   t.finish();
@@ -232,9 +269,10 @@ Scene read_scene(const std::vector<std::string>& files) {
   scene.file = files.front();
   scene.title = root.text_or("title", std::filesystem::path(files.front()).stem().string());
   scene.box = read_box(root.table("box"));
-  scene.fluid = read_fluid(root.table("fluid"));
-  scene.numerics = read_numerics(root.table("numerics"));
-  if (root.has("particles")) scene.particles = read_particles(root.table("particles"));
+  const int d = scene.box.dimension;
+  scene.fluid = read_fluid(root.table("fluid"), d);
+  scene.numerics = read_numerics(root.table("numerics"), d);
+  if (root.has("particles")) scene.particles = read_particles(root.table("particles"), d);
   if (root.has("coupling")) scene.coupling = read_coupling(root.table("coupling"));
   if (scene.coupling && !scene.particles)
     root.fail("particles", "is missing", "[coupling] needs a table [particles]");
@@ -245,13 +283,14 @@ Scene read_scene(const std::vector<std::string>& files) {
   run.finish();
   for (const TableReader& t : root.tables("boundary"))
     scene.boundaries.push_back(read_boundary(t, scene.box));
-  for (const TableReader& t : root.tables("obstacle")) scene.obstacles.push_back(read_obstacle(t));
-  read_grains(root.optional_table("grains"), files.front(), scene.obstacles);
-  scene.initial = read_initial(root.optional_table("initial"));
+  for (const TableReader& t : root.tables("obstacle"))
+    scene.obstacles.push_back(read_obstacle(t, d));
+  read_grains(root.optional_table("grains"), files.front(), d, scene.obstacles);
+  scene.initial = read_initial(root.optional_table("initial"), d);
   TableReader output = root.optional_table("output");
   scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
   scene.output.probe_every = output.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
-  scene.output.points = output.vectors_or_none("points", "[m]");
+  scene.output.points = output.vectors_or_none("points", d, "[m]");
   output.finish();
   root.finish();
   return scene;

@@ -143,31 +143,49 @@ std::string TableReader::choice_or(const std::string& key, const std::string& fa
        fmt::format("choose one of: {}", fmt::join(known, ", ")));
 }
 
-Vec2 TableReader::to_vector(const toml::node& node, const std::string& key,
+namespace {
+
+std::string vector_text(int dimension, const std::string& unit) {
+  return (dimension == 2 ? "[x, y] " : "[x, y, z] ") + unit;
+}
+
+}  // namespace
+
+int TableReader::length_of(const std::string& key) const {
+  const toml::array* array = table_.get_as<toml::array>(key);
+  return array ? static_cast<int>(array->size()) : 0;
+}
+
+Vec3 TableReader::to_vector(const toml::node& node, const std::string& key, int dimension,
                             const std::string& unit) const {
   const toml::array* array = node.as_array();
-  if (!array || array->size() != 2)
-    throw InputError(where(&node, key) + fmt::format(" = {} is no pair of numbers", shown(node)),
-                     fmt::format("give [x, y] {}", unit));
-  return {to_number(*array->get(0), key, {}, unit), to_number(*array->get(1), key, {}, unit)};
+  if (!array || array->size() != static_cast<std::size_t>(dimension))
+    throw InputError(where(&node, key) + fmt::format(" = {} is no {} of numbers", shown(node),
+                                                     dimension == 2 ? "pair" : "triple"),
+                     "give " + vector_text(dimension, unit));
+  Vec3 v;
+  for (int a = 0; a < dimension; ++a) v[a] = to_number(*array->get(a), key, {}, unit);
+  return v;
 }
 
-Vec2 TableReader::vector(const std::string& key, const std::string& unit) {
-  return to_vector(need(key, "[x, y] " + unit), key, unit);
+Vec3 TableReader::vector(const std::string& key, int dimension, const std::string& unit) {
+  return to_vector(need(key, vector_text(dimension, unit)), key, dimension, unit);
 }
-Vec2 TableReader::vector_or(const std::string& key, const Vec2& fallback, const std::string& unit) {
+Vec3 TableReader::vector_or_zero(const std::string& key, int dimension, const std::string& unit) {
   const toml::node* node = find(key);
-  return node ? to_vector(*node, key, unit) : fallback;
+  return node ? to_vector(*node, key, dimension, unit) : Vec3();
 }
 
-std::vector<Vec2> TableReader::vectors_or_none(const std::string& key, const std::string& unit) {
-  std::vector<Vec2> result;
+std::vector<Vec3> TableReader::vectors_or_none(const std::string& key, int dimension,
+                                               const std::string& unit) {
+  std::vector<Vec3> result;
   const toml::node* node = find(key);
   if (!node) return result;
   const toml::array* array = node->as_array();
   if (!array || array->empty() || !array->get(0)->is_array())
-    fail(key, fmt::format("= {} is no list of points", shown(*node)), "give [[x, y], …] " + unit);
-  for (const toml::node& point : *array) result.push_back(to_vector(point, key, unit));
+    fail(key, fmt::format("= {} is no list of points", shown(*node)),
+         dimension == 2 ? "give [[x, y], …] " + unit : "give [[x, y, z], …] " + unit);
+  for (const toml::node& point : *array) result.push_back(to_vector(point, key, dimension, unit));
   return result;
 }
 
@@ -189,7 +207,7 @@ Range TableReader::range(const std::string& key, const Bounds& bounds, const std
     const double value = to_number(node, key, bounds, unit);
     return {value, value};
   }
-  const Vec2 pair = to_vector(node, key, unit);
+  const Vec3 pair = to_vector(node, key, 2, unit);
   for (const double v : {pair.x(), pair.y()})
     if (v <= bounds.lo || v >= bounds.hi)
       fail(key, fmt::format("= {} is out of range", shown(node)),

@@ -47,9 +47,12 @@ class TableReader {
   std::string text_or(const std::string& key, const std::string& fallback);
   std::string choice_or(const std::string& key, const std::string& fallback,
                         const std::vector<std::string>& known);
-  Vec2 vector(const std::string& key, const std::string& unit);
-  Vec2 vector_or(const std::string& key, const Vec2& fallback, const std::string& unit);
-  std::vector<Vec2> vectors_or_none(const std::string& key, const std::string& unit);
+  /// Numbers in a list; 0 where the key is absent or no list.
+  int length_of(const std::string& key) const;
+  /// A vector of 2 or 3 numbers.
+  Vec3 vector(const std::string& key, int dimension, const std::string& unit);
+  Vec3 vector_or_zero(const std::string& key, int dimension, const std::string& unit);
+  std::vector<Vec3> vectors_or_none(const std::string& key, int dimension, const std::string& unit);
   /// A number, or a list of numbers.
   std::vector<double> numbers_or(const std::string& key, const std::vector<double>& fallback,
                                  const Bounds& bounds, const std::string& unit);
@@ -70,7 +73,8 @@ class TableReader {
   std::string where(const toml::node* node, const std::string& key) const;
   double to_number(const toml::node& node, const std::string& key, const Bounds& bounds,
                    const std::string& unit) const;
-  Vec2 to_vector(const toml::node& node, const std::string& key, const std::string& unit) const;
+  Vec3 to_vector(const toml::node& node, const std::string& key, int dimension,
+                 const std::string& unit) const;
 
   const toml::table& table_;
   std::string path_, file_;

@@ -4,59 +4,93 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <tuple>
 
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/base/simd.h"
-#include "lbm_solver/collision/equilibrium.h"
-#include "lbm_solver/immersed/disc_fraction.h"
+#include "lbm_solver/immersed/solid_fraction.h"
 
 namespace lbm {
 
 Fluid::Fluid(const Domain& domain, const KernelChoice& choice)
-    : domain_(domain),
-      f_(domain.nx, domain.ny),
-      stream_(domain.x, domain.y),
+    : Fluid(Decomposition(domain), choice) {}
+
+Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
+    : ranks_(std::make_shared<Decomposition>(ranks)),
+      f_(lbm::lattice(choice.lattice), cells().size, choice.precision),
+      stream_(cells().faces),
       kernel_(make_kernel(choice)),
       half_force_(choice.force ? 0.5 * choice.parameters.force_x : 0.0,
-                  choice.force ? 0.5 * choice.parameters.force_y : 0.0),
+                  choice.force ? 0.5 * choice.parameters.force_y : 0.0,
+                  choice.force ? 0.5 * choice.parameters.force_z : 0.0),
+      halo_(ranks.alone() ? nullptr : std::make_unique<HaloExchange>(*ranks_, f_)),
       cover_(choice.solid_term == "none"
                  ? nullptr
                  : std::make_unique<CoverMap>(
-                       domain, choice.turbulence == "none"
-                                   ? ImmersedWeight{choice.weight, choice.parameters.tau}
-                                   : ImmersedWeight{WeightRule::Fraction})) {}
-
-void Fluid::set_equilibrium(int x, int y, double rho, const Vec2& u) {
-  const Vec2 before = u - half_force_ / rho;  // the step adds the other half of a body force
-  const Equilibrium<double> eq(rho - 1.0, before.x(), before.y());
-  arriving(0, x, y) = eq.rest();
-  unroll<D2Q9::pairs>([&](auto p) {
-    constexpr int i = 2 * p + 1;
-    const auto halves = eq.pair<i>();
-    arriving(i, x, y) = halves.even + halves.odd;
-    arriving(i + 1, x, y) = halves.even - halves.odd;
-  });
+                       domain(), cells(),
+                       choice.turbulence == "none"
+                           ? ImmersedWeight{choice.weight, choice.parameters.tau}
+                           : ImmersedWeight{WeightRule::Fraction})) {
+  if (lattice().D != domain().dimension())
+    throw std::invalid_argument(std::string(lattice().name) + " for a box of " +
+                                std::to_string(domain().dimension()) + " dimensions");
 }
 
-void Fluid::place(std::span<const Disc> discs) {
+void Fluid::set_equilibrium(const Cell3& cell, double rho, const Vec3& u) {
+  // the step adds the other half of a body force
+  lbm::set_equilibrium(f_, stream_, cell, rho - 1.0, u - half_force_ / rho);
+}
+
+void Fluid::place(std::span<const Body> bodies) {
   BPLBM_EXPECT(has_solids());
   if (scheme_)
-    discs_.assign(discs.begin(), discs.end());
+    bodies_.assign(bodies.begin(), bodies.end());
   else
-    cover_->update(discs);
+    cover_->update(bodies);
 }
 
-double Fluid::solid_fraction(int x, int y) const {
-  double sum = cover_ ? cover_->solid_fraction(x, y) : 0.0;
-  for (const Disc& disc : discs_) {
-    Vec2 arm = Vec2(x + 0.5, y + 0.5) - disc.centre;
-    if (domain_.x == Side::Periodic) arm.x() -= domain_.nx * std::round(arm.x() / domain_.nx);
-    if (domain_.y == Side::Periodic) arm.y() -= domain_.ny * std::round(arm.y() / domain_.ny);
-    const double fraction = disc_fraction(arm.x(), arm.y(), disc.radius);
-    sum += disc.hollow ? 1.0 - fraction : fraction;
+double Fluid::solid_fraction(int x, int y, int z) const {
+  double sum = cover_ ? cover_->solid_fraction(x, y, z) : 0.0;
+  for (const Body& body : bodies_) {
+    const Vec3 centre(x + 0.5, y + 0.5, domain().dimension() == 3 ? z + 0.5 : 0.0);
+    const Vec3 arm = domain().nearest_image(centre - body.centre);
+    const double fraction = domain().dimension() == 3
+                                ? sphere_fraction(arm.x(), arm.y(), arm.z(), body.radius)
+                                : disc_fraction(arm.x(), arm.y(), body.radius);
+    sum += body.hollow ? 1.0 - fraction : fraction;
   }
   return std::min(1.0, sum);
+}
+
+/// One step's sweep where neighbours are other ranks; called by every thread of a parallel region.
+/// The rows at the faces of the first axis go first, so that their populations travel while the
+/// rest is swept. Leaves with a barrier.
+void Fluid::sweep_and_exchange(EsotericPull& stream) {
+  const int first = halo_->axes().front();
+  Rows inner = Rows::all(f_);
+  if (first > 0) {
+    int& begin = first == 2 ? inner.z_begin : inner.y_begin;
+    int& end = first == 2 ? inner.z_end : inner.y_end;
+    Rows low = inner, high = inner;
+    (first == 2 ? low.z_end : low.y_end) = begin + 1;
+    (first == 2 ? high.z_begin : high.y_begin) = end - 1;
+    kernel_->sweep(f_, stream, cover_.get(), low);
+    kernel_->sweep(f_, stream, cover_.get(), high);
+    ++begin;
+    --end;
+#pragma omp barrier
+#pragma omp master
+    halo_->begin(first, f_, stream);
+  }
+  kernel_->sweep(f_, stream, cover_.get(), inner);
+#pragma omp barrier
+#pragma omp master
+  {
+    for (const int axis : halo_->axes()) {
+      if (axis != first || first == 0) halo_->begin(axis, f_, stream);
+      halo_->finish(axis, f_, stream);
+    }
+  }
+#pragma omp barrier
 }
 
 void Fluid::advance(std::int64_t steps) {
@@ -68,12 +102,17 @@ void Fluid::advance(std::int64_t steps) {
     for (std::int64_t s = 1; s <= steps; ++s) {
       if (scheme_) {
 #pragma omp single
-        scheme_->before_sweep(discs_, f_, stream);
+        scheme_->before_sweep(bodies_, f_, stream);
       }
-      kernel_->sweep(f_, stream, cover_.get());
+      if (halo_)
+        sweep_and_exchange(stream);
+      else
+        kernel_->sweep(f_, stream, cover_.get(), Rows::all(f_));
       stream.advance();
       if (!passes && s == steps) break;  // the end of the region is the barrier
+      if (!halo_) {
 #pragma omp barrier
+      }
       if (!passes) continue;
 #pragma omp single
       {
@@ -86,102 +125,167 @@ void Fluid::advance(std::int64_t steps) {
   steps_ += steps;
 }
 
-Fluid::Cell Fluid::cell(int x, int y) const {
-  double f[D2Q9::Q];
-  for (int q = 0; q < D2Q9::Q; ++q) f[q] = arriving(q, x, y);
-  const Moments<double> m = moments(f);
-  return {m.drho + 1.0, (Vec2(m.jx, m.jy) + half_force_) / (m.drho + 1.0)};
-}
-
-Fluid::Cell Fluid::at(const Vec2& place) const {
-  const auto split = [](double v, int n) {
-    const double inside = std::clamp(v - 0.5, 0.0, static_cast<double>(n - 1));
-    const int low = std::min(static_cast<int>(inside), n - 2);
-    return std::pair{low, inside - low};
-  };
-  const auto [x, fx] = split(place.x(), domain_.nx);
-  const auto [y, fy] = split(place.y(), domain_.ny);
-  Cell sum{0.0, {0.0, 0.0}};
-  for (const auto& [dx, dy, weight] : {std::tuple{0, 0, (1 - fx) * (1 - fy)},
-                                       {1, 0, fx * (1 - fy)},
-                                       {0, 1, (1 - fx) * fy},
-                                       {1, 1, fx * fy}}) {
-    const Cell c = cell(x + dx, y + dy);
-    sum.rho += weight * c.rho;
-    sum.u += weight * c.u;
-  }
+double Fluid::mass_in() const {
+  double sum = 0.0;
+  for (const auto& patch : patches_) sum += patch->mass_in();
+  ranks_->sum({&sum, 1});
   return sum;
 }
 
-void Fluid::row(int y, std::span<double> rho, std::span<double> ux, std::span<double> uy) {
-  const EsotericPull::Row row = stream_.open(f_, y);  // makes the ends ready; may be repeated
-  const auto cells = [&]<class V>(int x) {
-    V f[D2Q9::Q];
-    unroll<D2Q9::Q>([&](auto q) { f[q] = load<V>(row.in[q] + x); });
-    const Moments<V> m = moments(f);
-    store(&rho[x], m.drho + V(1.0));
-    const V inverse = V(1.0) / (m.drho + V(1.0));
-    store(&ux[x], (m.jx + V(half_force_.x())) * inverse);
-    store(&uy[x], (m.jy + V(half_force_.y())) * inverse);
-  };
-  int x = 0;
-  for (; x + kPackWidth <= domain_.nx; x += kPackWidth) cells.operator()<Pack>(x);
-  for (; x < domain_.nx; ++x) cells.operator()<double>(x);
+Fluid::Cell Fluid::cell(int x, int y, int z) const {
+  const CellMoments m = cell_moments(f_, stream_, x, y, z);
+  return {m.drho + 1.0, (m.j + half_force_) / (m.drho + 1.0)};
+}
+
+Fluid::Cell Fluid::at(const Vec3& place) const {
+  int low[3];
+  double part[3];
+  for (int a = 0; a < 3; ++a) {
+    const int n = domain().cells()[a];
+    const double inside = std::clamp(place[a] - 0.5, 0.0, static_cast<double>(n - 1));
+    low[a] = std::min(static_cast<int>(inside), std::max(0, n - 2));
+    part[a] = n > 1 ? inside - low[a] : 0.0;
+  }
+  double sum[4] = {0.0, 0.0, 0.0, 0.0};
+  for (int corner = 0; corner < (1 << domain().dimension()); ++corner) {
+    Cell3 at;
+    double weight = 1.0;
+    for (int a = 0; a < 3; ++a) {
+      const int up = corner >> a & 1;
+      at[a] = low[a] + up;
+      weight *= up ? part[a] : 1.0 - part[a];
+    }
+    if (!cells().holds(at)) continue;
+    const auto& b = cells().begin;
+    const Cell c = cell(at[0] - b[0], at[1] - b[1], at[2] - b[2]);
+    sum[0] += weight * c.rho;
+    for (int a = 0; a < 3; ++a) sum[1 + a] += weight * c.u[a];
+  }
+  ranks_->sum(sum);
+  return {sum[0], {sum[1], sum[2], sum[3]}};
+}
+
+void Fluid::row(int y, int z, std::span<double> rho, const RowVelocity& u) {
+  kernel_->macroscopic(f_, stream_, y, z, half_force_, rho, u);
 }
 
 Fluid::Extremes Fluid::extremes() {
-  Extremes e;
-  double largest = 0.0;
-  std::vector<double> rho(domain_.nx), ux(domain_.nx), uy(domain_.nx);
-  for (int y = 0; y < domain_.ny; ++y) {
-    row(y, rho, ux, uy);
-    for (int x = 0; x < domain_.nx; ++x) {
-      const double speed2 = ux[x] * ux[x] + uy[x] * uy[x];
-      e.mass_excess += rho[x] - 1.0;
-      if (!std::isfinite(rho[x] + speed2)) return {speed2, x, y, false, 0.0};
-      if (speed2 <= largest) continue;
-      largest = speed2;
-      e.x = x;
-      e.y = y;
+  const Cell3 n = cells().size, &begin = cells().begin;
+  double largest = 0.0, excess = 0.0;
+  Cell3 fastest = begin, broken{0, 0, 0};
+  bool finite = true;
+  std::vector<double> rho(n[0]), u[3];
+  for (auto& component : u) component.assign(n[0], 0.0);
+  for (int z = 0; z < n[2] && finite; ++z)
+    for (int y = 0; y < n[1] && finite; ++y) {
+      row(y, z, rho, {u[0], u[1], u[2]});
+      for (int x = 0; x < n[0] && finite; ++x) {
+        const double speed2 = u[0][x] * u[0][x] + u[1][x] * u[1][x] + u[2][x] * u[2][x];
+        excess += rho[x] - 1.0;
+        const Cell3 here{x + begin[0], y + begin[1], z + begin[2]};
+        if (!std::isfinite(rho[x] + speed2)) {
+          finite = false;
+          broken = here;
+        } else if (speed2 > largest) {
+          largest = speed2;
+          fastest = here;
+        }
+      }
     }
+  // One line a rank: every rank draws the same conclusion from all of them.
+  const Cell3& cell = finite ? fastest : broken;
+  std::vector<double> lines = ranks_->collect({finite ? 1.0 : 0.0, std::sqrt(largest), excess,
+                                               1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]});
+  ranks_->broadcast(lines);
+  Extremes e;
+  for (std::size_t i = 0; i < lines.size(); i += 6) {
+    const double* line = &lines[i];
+    const bool sound = line[0] == 1.0;
+    e.mass_excess += line[2];
+    if (!e.finite || (sound && line[1] <= e.max_speed)) continue;
+    e.finite = sound;
+    e.max_speed = line[1];
+    e.cell = {static_cast<int>(line[3]), static_cast<int>(line[4]), static_cast<int>(line[5])};
   }
-  e.max_speed = std::sqrt(largest);
   return e;
 }
 
+namespace {
+
+/// Calls f(number, cell) for every cell of a block, in the order of Decomposition::gather.
+template <class F>
+void each_cell(const Cell3& n, F&& f) {
+  std::size_t number = 0;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) f(number++, x, y, z);
+}
+
+}  // namespace
+
 std::map<std::string, std::vector<double>> Fluid::state() const {
   std::map<std::string, std::vector<double>> state;
-  state["populations"].assign(f_.raw().begin(), f_.raw().end());
+  const auto q_count = static_cast<std::size_t>(lattice().Q);
+  const Cell3& n = cells().size;
+  std::vector<double> mine(q_count * n[0] * n[1] * n[2]);
+  each_cell(n, [&](std::size_t number, int x, int y, int z) {
+    for (int q = 0; q < lattice().Q; ++q) mine[number * q_count + q] = arriving(q, x, y, z);
+  });
+  state["populations"] = ranks_->gather(std::move(mine), lattice().Q);
   state["clock"] = {static_cast<double>(steps_), stream_.odd() ? 1.0 : 0.0};
   for (std::size_t i = 0; i < patches_.size(); ++i) {
+    Patch& patch = *patches_[i];
+    std::vector<double> lines;
+    for (std::size_t k = 0; k < patch.memory().size(); ++k)
+      lines.insert(lines.end(), {static_cast<double>(patch.links()[k].number), patch.memory()[k]});
+    lines = ranks_->collect(lines);
+    double mass = patch.mass_in();
+    ranks_->sum({&mass, 1});
     std::vector<double>& values = state["patch" + std::to_string(i)];
-    values = patches_[i]->memory();
-    values.push_back(patches_[i]->mass_in());
+    values.assign(lines.size() / 2, 0.0);
+    for (std::size_t k = 0; k < lines.size(); k += 2)
+      values[static_cast<std::size_t>(lines[k])] = lines[k + 1];
+    values.push_back(mass);
   }
   if (scheme_) state["scheme"] = scheme_->memory();
   return state;
 }
 
 void Fluid::restore(const std::map<std::string, std::vector<double>>& state) {
-  const auto take = [&state](const std::string& name,
-                             std::size_t size) -> const std::vector<double>& {
+  const auto find = [&state](const std::string& name) -> const std::vector<double>& {
     const auto found = state.find(name);
-    if (found == state.end() || found->second.size() != size)
-      throw std::invalid_argument("'" + name + "' is missing or of another size");
+    if (found == state.end()) throw std::invalid_argument("'" + name + "' is missing");
     return found->second;
   };
-  const auto& populations = take("populations", f_.raw().size());
-  const auto& clock = take("clock", 2);
+  const auto expect = [](bool right, const std::string& name) {
+    if (!right) throw std::invalid_argument("'" + name + "' is of another size");
+  };
+  const auto& clock = find("clock");
+  expect(clock.size() == 2, "clock");
   for (std::size_t i = 0; i < patches_.size(); ++i) {
+    const std::string name = "patch" + std::to_string(i);
+    const auto& values = find(name);
     std::vector<double>& memory = patches_[i]->memory();
-    const auto& values = take("patch" + std::to_string(i), memory.size() + 1);
-    std::copy_n(values.begin(), memory.size(), memory.begin());
-    patches_[i]->restore_mass(values.back());
+    for (std::size_t k = 0; k < memory.size(); ++k) {
+      const auto number = static_cast<std::size_t>(patches_[i]->links()[k].number);
+      expect(number + 1 < values.size(), name);
+      memory[k] = values[number];
+    }
+    expect(!values.empty(), name);
+    patches_[i]->restore_mass(ranks_->rank() == 0 ? values.back() : 0.0);
   }
-  if (scheme_) scheme_->restore(state.at("scheme"));
-  std::copy(populations.begin(), populations.end(), f_.raw().begin());
+  if (scheme_) scheme_->restore(find("scheme"));
+  const Cell3 n = cells().size, all = domain().cells();
+  const auto q_count = static_cast<std::size_t>(lattice().Q);
+  std::vector<double> populations = find("populations");
+  expect(ranks_->rank() != 0 || populations.size() == q_count * all[0] * all[1] * all[2],
+         "populations");
+  populations = ranks_->scatter(std::move(populations), lattice().Q);
   steps_ = static_cast<std::int64_t>(clock[0]);
   stream_.set_odd(clock[1] != 0.0);
+  each_cell(n, [&](std::size_t number, int x, int y, int z) {
+    for (int q = 0; q < lattice().Q; ++q) arriving(q, x, y, z) = populations[number * q_count + q];
+  });
 }
 
 }  // namespace lbm

@@ -12,13 +12,34 @@
 
 namespace lbm {
 
-/// One sweep of the lattice: stream and collide every cell. The only virtual call of a time step.
+/// The rows of some layers of a lattice, numbered through: y runs first.
+struct Rows {
+  int y_begin = 0, y_end = 0, z_begin = 0, z_end = 1;
+
+  static Rows all(const Populations& f) { return {0, f.ny(), 0, f.nz()}; }
+  int size() const { return (y_end - y_begin) * (z_end - z_begin); }
+  std::pair<int, int> operator[](int r) const {
+    const int n = y_end - y_begin;
+    return {y_begin + r % n, z_begin + r / n};
+  }
+};
+
+/// Velocity components along a row, [nx] each; z is left alone in two dimensions.
+using RowVelocity = std::array<std::span<double>, 3>;
+
+/// One sweep of the lattice: stream and collide cells. The only virtual call of a time step.
 class Kernel {
  public:
   virtual ~Kernel() = default;
   /// Called by every thread of a parallel region, each for its share of the rows; returns without
   /// waiting for the others. @param cover  covered cells; null where the scene has no solids
-  virtual void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover) const = 0;
+  virtual void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover,
+                     const Rows& rows) const = 0;
+
+  /// Density and velocity of a row of what has arrived. @param half_force  half the body force
+  virtual void macroscopic(Populations& f, const EsotericPull& stream, int y, int z,
+                           const Vec3& half_force, std::span<double> rho,
+                           const RowVelocity& u) const = 0;
 };
 
 /// What a scene asks of the kernel; a row of the kernel table.
@@ -29,6 +50,8 @@ struct KernelChoice {
   std::string solid_term = "none";  ///< "none" or one of known_solid_terms()
   CollisionParameters parameters;
   WeightRule weight = WeightRule::Viscous;
+  std::string lattice = "D2Q9";  ///< one of known_lattices()
+  Precision precision = Precision::Double;
 };
 
 /// @throws std::invalid_argument naming the rows, or the solid terms, that exist

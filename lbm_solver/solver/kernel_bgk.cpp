@@ -4,8 +4,8 @@
 
 namespace lbm {
 
-template <class Turbulence, class Force>
-using Bgk = TwoRates<EqualRates, Turbulence, Force>;
+template <class L, class Turbulence, class Force>
+using Bgk = TwoRates<L, EqualRates, Turbulence, Force>;
 
 KernelRows bgk_rows() {
   return rows_of<Bgk>("bgk");

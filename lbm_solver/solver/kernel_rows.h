@@ -8,7 +8,8 @@
 namespace lbm {
 
 struct KernelTableRow {
-  std::string collision, turbulence;
+  std::string collision, lattice, turbulence;
+  Precision precision;
   bool force, solids;
   std::unique_ptr<Kernel> (*make)(const KernelChoice&);
 };
@@ -20,26 +21,42 @@ KernelRows trt_rows();
 KernelRows central_moment_rows();
 KernelRows recursive_regularised_rows();
 
-template <class Collision, class Solids>
+template <class Collision, class Solids, class Real>
 std::unique_ptr<Kernel> make_row_kernel(const KernelChoice& c) {
-  return std::make_unique<RowKernel<Collision, Solids>>(c);
+  return std::make_unique<RowKernel<Collision, Solids, Real>>(c);
 }
 
 /// The rows of one operator with one turbulence model and force.
-template <class Collision>
+template <class Collision, class Real>
 void add_rows(KernelRows& rows, const char* name, const char* turbulence, bool force) {
-  rows.push_back({name, turbulence, force, false, make_row_kernel<Collision, NoSolids>});
-  rows.push_back({name, turbulence, force, true, make_row_kernel<Collision, CoveredCells>});
+  constexpr Precision precision =
+      std::is_same_v<Real, double> ? Precision::Double : Precision::Single;
+  const char* lattice = Collision::Set::name;
+  rows.push_back({name, lattice, turbulence, precision, force, false,
+                  make_row_kernel<Collision, NoSolids, Real>});
+  rows.push_back({name, lattice, turbulence, precision, force, true,
+                  make_row_kernel<Collision, CoveredCells, Real>});
 }
 
-/// All rows of an operator that is a template on turbulence model and force.
-template <template <class, class> class Collision>
+/// All rows of one lattice and precision.
+template <template <class, class, class> class Collision, class L, class Real>
+void add_lattice(KernelRows& rows, const char* name) {
+  add_rows<Collision<L, Laminar, NoForce<L>>, Real>(rows, name, "none", false);
+  add_rows<Collision<L, Laminar, GuoForce<L>>, Real>(rows, name, "none", true);
+  add_rows<Collision<L, Smagorinsky, NoForce<L>>, Real>(rows, name, "smagorinsky", false);
+  add_rows<Collision<L, Smagorinsky, GuoForce<L>>, Real>(rows, name, "smagorinsky", true);
+}
+
+/// All rows of an operator that is a template on lattice, turbulence model and force.
+template <template <class, class, class> class Collision>
 KernelRows rows_of(const char* name) {
   KernelRows rows;
-  add_rows<Collision<Laminar, NoForce>>(rows, name, "none", false);
-  add_rows<Collision<Laminar, GuoForce>>(rows, name, "none", true);
-  add_rows<Collision<Smagorinsky, NoForce>>(rows, name, "smagorinsky", false);
-  add_rows<Collision<Smagorinsky, GuoForce>>(rows, name, "smagorinsky", true);
+  add_lattice<Collision, D2Q9, double>(rows, name);
+  add_lattice<Collision, D2Q9, float>(rows, name);
+  add_lattice<Collision, D3Q19, double>(rows, name);
+  add_lattice<Collision, D3Q19, float>(rows, name);
+  add_lattice<Collision, D3Q27, double>(rows, name);
+  add_lattice<Collision, D3Q27, float>(rows, name);
   return rows;
 }
 

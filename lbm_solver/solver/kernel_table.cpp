@@ -19,25 +19,24 @@ const KernelRows& table() {
   return all;
 }
 
-std::string text(const std::string& collision, const std::string& turbulence, bool force,
-                 bool solids) {
-  return fmt::format("{} + {} + {} + {}", collision, turbulence == "none" ? "laminar" : turbulence,
-                     force ? "force" : "no force", solids ? "solids" : "no solids");
+std::string text(const KernelTableRow& r) {
+  return fmt::format("{} {} {} + {} + {} + {}", r.lattice,
+                     r.precision == Precision::Double ? "double" : "single", r.collision,
+                     r.turbulence == "none" ? "laminar" : r.turbulence,
+                     r.force ? "force" : "no force", r.solids ? "solids" : "no solids");
 }
 
 }  // namespace
 
 std::unique_ptr<Kernel> make_kernel(const KernelChoice& c) {
-  const bool solids = c.solid_term != "none";
+  const KernelTableRow wanted{
+      c.collision, c.lattice, c.turbulence, c.precision, c.force, c.solid_term != "none", nullptr};
   std::string known;
   for (const KernelTableRow& row : table()) {
-    if (c.collision == row.collision && c.turbulence == row.turbulence && c.force == row.force &&
-        solids == row.solids)
-      return row.make(c);
-    known += "\n  " + text(row.collision, row.turbulence, row.force, row.solids);
+    if (text(row) == text(wanted)) return row.make(c);
+    known += "\n  " + text(row);
   }
-  throw std::invalid_argument(fmt::format("no kernel for {}; known:{}",
-                                          text(c.collision, c.turbulence, c.force, solids), known));
+  throw std::invalid_argument(fmt::format("no kernel for {}; known:{}", text(wanted), known));
 }
 
 std::vector<std::string> known_collisions() {

@@ -4,8 +4,8 @@
 
 namespace lbm {
 
-template <class Turbulence, class Force>
-using Trt = TwoRates<MagicRate, Turbulence, Force>;
+template <class L, class Turbulence, class Force>
+using Trt = TwoRates<L, MagicRate, Turbulence, Force>;
 
 KernelRows trt_rows() {
   return rows_of<Trt>("trt");

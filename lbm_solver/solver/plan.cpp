@@ -46,6 +46,11 @@ Side to_side(SideKind kind) {
   return kind == SideKind::Wall ? Side::Wall : Side::Periodic;
 }
 
+std::string place_text(const Scene& s, const Vec3& x) {
+  return s.box.dimension == 2 ? fmt::format("[{:.6g}, {:.6g}]", x.x(), x.y())
+                              : fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x.x(), x.y(), x.z());
+}
+
 void check_particles(const Scene& s) {
   const ParticleScene& p = *s.particles;
   if (s.coupling && p.density.lo < kLightest * s.fluid.density)
@@ -54,7 +59,7 @@ void check_particles(const Scene& s) {
                                  "proven stable there",
                                  p.density.lo, kLightest),
                      fmt::format("take at least {:.6g} kg/m³", kLightest * s.fluid.density));
-  const double width = s.box.size.minCoeff();
+  const double width = s.box.size.head(s.box.dimension).minCoeff();
   if (p.diameter.hi > width)
     throw InputError(
         s.file + ": particles.diameter",
@@ -63,24 +68,25 @@ void check_particles(const Scene& s) {
   const auto half_periodic = [&](SideKind side, double length) {
     return side == SideKind::Periodic && p.diameter.hi > 0.5 * length;
   };
-  if (half_periodic(s.box.x, s.box.size.x()) || half_periodic(s.box.y, s.box.size.y()))
-    throw InputError(s.file + ": particles.diameter",
-                     fmt::format("= {:.6g} m exceeds half of a periodic length", p.diameter.hi),
-                     "take a longer box");
+  for (int k = 0; k < s.box.dimension; ++k)
+    if (half_periodic(s.box.sides[k], s.box.size[k]))
+      throw InputError(s.file + ": particles.diameter",
+                       fmt::format("= {:.6g} m exceeds half of a periodic length", p.diameter.hi),
+                       "take a longer box");
   const double r = 0.5 * p.diameter.lo;
-  for (const Vec2& x : p.start) {
+  for (const Vec3& x : p.start) {
     const auto outside = [&](int k, SideKind side) {
       const double margin = side == SideKind::Wall ? r : 0.0;
       return x[k] - margin < s.box.origin[k] - 1e-12 ||
              x[k] + margin > s.box.origin[k] + s.box.size[k] + 1e-12;
     };
-    if (outside(0, s.box.x) || outside(1, s.box.y))
-      throw InputError(s.file + ": particles.start",
-                       fmt::format("[{:.6g}, {:.6g}] with radius {:.6g} m lies outside the box",
-                                   x.x(), x.y(), r),
-                       fmt::format("keep it within {:.6g} … {:.6g} by {:.6g} … {:.6g} m",
-                                   s.box.origin.x(), s.box.origin.x() + s.box.size.x(),
-                                   s.box.origin.y(), s.box.origin.y() + s.box.size.y()));
+    for (int k = 0; k < s.box.dimension; ++k)
+      if (outside(k, s.box.sides[k]))
+        throw InputError(
+            s.file + ": particles.start",
+            fmt::format("{} with radius {:.6g} m lies outside the box", place_text(s, x), r),
+            fmt::format("keep it within {:.6g} … {:.6g} m in {}", s.box.origin[k],
+                        s.box.origin[k] + s.box.size[k], "xyz"[k]));
   }
 }
 
@@ -88,7 +94,7 @@ void check_particles(const Scene& s) {
 double reference_length(const Scene& s) {
   if (s.particles) return s.particles->diameter.lo;
   for (const auto& o : s.obstacles)
-    if (o.disc) return o.diameter;
+    if (o.round) return o.diameter;
   return s.box.size.x();
 }
 
@@ -181,15 +187,20 @@ void choose_solids(const Scene& s, Plan& plan) {
   KernelChoice& k = plan.kernel;
   k.solid_term = "none";
   const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                  [](const ObstacleScene& o) { return !o.disc; });
+                                  [](const ObstacleScene& o) { return !o.round; });
   const bool spinning = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                    [](const ObstacleScene& o) { return o.spin != 0.0; });
+                                    [](const ObstacleScene& o) { return !o.spin.isZero(0.0); });
   if (!s.coupling && s.obstacles.empty()) return;
   if (n.scheme != "auto" && n.scheme != plan.scheme) {
     if (n.solid_term != "auto")
       throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
                        "leave it out, or take scheme = \"immersed_moving_boundary\"");
     plan.scheme = n.scheme;
+    const bool links = n.scheme == "bounce_back" || n.scheme == "interpolated_bounce_back";
+    if (s.box.dimension == 3 && !links)
+      throw InputError(s.file + ": numerics.scheme",
+                       "= \"" + n.scheme + "\" is there in two dimensions only",
+                       "take immersed_moving_boundary, bounce_back or interpolated_bounce_back");
     if (blocks) k.solid_term = "noble_torczynski";  // walls are covered cells under any scheme
     return;
   }
@@ -224,12 +235,18 @@ void choose_kernel(const Scene& s, Plan& plan) {
                   calm ? "at most" : "above", kLimitReynoldsCell,
                   calm ? "TRT is most accurate" : "TRT with fixed Λ gets noisy or unstable");
   }
+  k.lattice = n.lattice != "auto" ? n.lattice : s.box.dimension == 2 ? "D2Q9" : "D3Q19";
+  k.precision = n.single ? Precision::Single : Precision::Double;
   k.turbulence = n.smagorinsky > 0.0 ? "smagorinsky" : "none";
   k.force = s.fluid.body_force.norm() > 0.0;
   choose_solids(s, plan);
-  const Vec2 force = s.fluid.body_force * (dt * dt / dx);
-  k.parameters = {0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx), n.magic, n.smagorinsky, force.x(),
-                  force.y()};
+  const Vec3 force = s.fluid.body_force * (dt * dt / dx);
+  k.parameters = {0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),
+                  n.magic,
+                  n.smagorinsky,
+                  force.x(),
+                  force.y(),
+                  force.z()};
 }
 
 void choose_substeps(const Scene& s, Plan& plan) {
@@ -238,7 +255,9 @@ void choose_substeps(const Scene& s, Plan& plan) {
   double needed = 1.0;
   if (p.contact_stiffness) {
     const double r = 0.5 * p.diameter.lo;
-    const double mass = std::numbers::pi * r * r * s.box.depth * p.density.lo;
+    const double volume = s.box.dimension == 2 ? std::numbers::pi * r * r * s.box.depth
+                                               : 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    const double mass = volume * p.density.lo;
     const double contact = std::sqrt(mass / *p.contact_stiffness);
     needed = std::ceil(plan.interval() / (kStepFractionOfContact * contact) - 1e-9);
     plan.substep_limit = fmt::format("contact: step ≤ {} √(m/k) = {:.3g} s", kStepFractionOfContact,
@@ -261,9 +280,14 @@ void choose_substeps(const Scene& s, Plan& plan) {
 Plan make_plan(const Scene& s) {
   Plan plan;
   const double dx = cell_size(s);
-  plan.domain = {cells_along(s, s.box.size.x(), dx, "x"), cells_along(s, s.box.size.y(), dx, "y"),
-                 to_side(s.box.x), to_side(s.box.y)};
-  plan.units = {dx, 0.0, s.fluid.density, s.box.depth, s.box.origin};
+  const bool solid = s.box.dimension == 3;
+  plan.domain = {cells_along(s, s.box.size.x(), dx, "x"),
+                 cells_along(s, s.box.size.y(), dx, "y"),
+                 to_side(s.box.sides[0]),
+                 to_side(s.box.sides[1]),
+                 solid ? cells_along(s, s.box.size.z(), dx, "z") : 1,
+                 solid ? to_side(s.box.sides[2]) : Side::Periodic};
+  plan.units = {dx, 0.0, s.fluid.density, solid ? dx : s.box.depth, s.box.origin};
   plan.reynolds = s.fluid.velocity_scale * reference_length(s) / s.fluid.viscosity;
   if (s.particles) {
     check_particles(s);
@@ -282,19 +306,22 @@ std::string solid_checkpoint(const std::string& prefix, std::int64_t interval) {
   return fmt::format("{}.{}.solid", prefix, interval);
 }
 
-protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start) {
-  const Vec2 top = s.box.origin + s.box.size;
+protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start,
+                           const std::optional<Block>& cells) {
+  const Vec3 top = s.box.origin + s.box.size;
   const double half_depth = 0.5 * s.box.depth;
   protocol::Hello h;
   h.role = protocol::Role::Fluid;
   h.program = "lbm";
   h.program_version = BPLBM_VERSION;
-  h.dimension = 2;
-  h.box_lo = {s.box.origin.x(), s.box.origin.y(), -half_depth};
-  h.box_hi = {top.x(), top.y(), half_depth};
-  h.periodic = {s.box.x == SideKind::Periodic, s.box.y == SideKind::Periodic, 1};
+  const bool flat = s.box.dimension == 2;
+  h.dimension = s.box.dimension;
+  h.box_lo = {s.box.origin.x(), s.box.origin.y(), flat ? -half_depth : s.box.origin.z()};
+  h.box_hi = {top.x(), top.y(), flat ? half_depth : top.z()};
+  for (int k = 0; k < 3; ++k) h.periodic[k] = s.box.sides[k] == SideKind::Periodic;
+  if (flat) h.periodic[2] = 1;
   h.depth = s.box.depth;
-  h.gravity = {s.fluid.gravity.x(), s.fluid.gravity.y(), 0.0};
+  h.gravity = {s.fluid.gravity.x(), s.fluid.gravity.y(), s.fluid.gravity.z()};
   h.buoyancy = s.coupling->buoyancy;
   h.first_interval = start.interval;
   h.schedule = s.coupling->overlapped ? protocol::Schedule::Overlapped : protocol::Schedule::Serial;
@@ -307,7 +334,12 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   h.density = p.density;
   h.subdomain_lo = h.box_lo;
   h.subdomain_hi = h.box_hi;
-  h.reach = 2.0 * plan.units.dx;
+  for (int k = 0; cells && k < s.box.dimension; ++k) {
+    h.subdomain_lo[k] = s.box.origin[k] + plan.units.dx * cells->begin[k];
+    if (cells->begin[k] + cells->size[k] < plan.domain.cells()[k])
+      h.subdomain_hi[k] = s.box.origin[k] + plan.units.dx * (cells->begin[k] + cells->size[k]);
+  }
+  h.reach = std::max(2.0, s.coupling->lubrication_range) * plan.units.dx;
 
   const auto number = [&h](const std::string& name, double value) {
     h.variables.push_back(
@@ -324,10 +356,12 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
     whole(fmt::format("walls_{}", axis[k]), h.periodic[k] ? 0 : 1);
   }
   const double g = s.fluid.gravity.norm();
+  whole("dimension", s.box.dimension);
   number("depth", s.box.depth);
   number("gravity", g);
   number("gravity_x", g > 0.0 ? s.fluid.gravity.x() / g : 0.0);
-  number("gravity_y", g > 0.0 ? s.fluid.gravity.y() / g : -1.0);
+  number("gravity_y", g > 0.0 ? s.fluid.gravity.y() / g : flat ? -1.0 : 0.0);
+  number("gravity_z", g > 0.0 ? s.fluid.gravity.z() / g : flat ? 0.0 : -1.0);
   number("solid_step", plan.interval() / plan.substeps);
   whole("substeps", plan.substeps);
   whole("solid_steps_total", (plan.intervals - start.interval) * plan.substeps);
@@ -341,6 +375,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   for (std::size_t i = 0; i < p.start.size(); ++i) {
     number(fmt::format("particle{}_x", i + 1), p.start[i].x());
     number(fmt::format("particle{}_y", i + 1), p.start[i].y());
+    if (!flat) number(fmt::format("particle{}_z", i + 1), p.start[i].z());
   }
   if (p.contact_stiffness) number("contact_stiffness", *p.contact_stiffness);
   for (const auto& [name, value] : p.variables) h.variables.push_back({name, value});

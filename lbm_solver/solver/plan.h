@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,12 +57,17 @@ std::string solid_checkpoint(const std::string& prefix, std::int64_t interval);
 
 /// What the fluid says to the solid: everything of the plan that both must agree on, and the
 /// variables that its script may use instead of numbers of its own.
-protocol::Hello make_hello(const Scene& scene, const Plan& plan, const RunStart& start = {});
+/// @param cells  of this rank, where several share the box
+protocol::Hello make_hello(const Scene& scene, const Plan& plan, const RunStart& start = {},
+                           const std::optional<Block>& cells = {});
 
 /// A fluid as a scene wants it: boundaries and obstacles in place, initial state set.
-Fluid make_fluid(const Scene& scene, const Plan& plan);
+Fluid make_fluid(const Scene& scene, const Plan& plan, const Decomposition& ranks);
+inline Fluid make_fluid(const Scene& scene, const Plan& plan) {
+  return make_fluid(scene, plan, Decomposition(plan.domain));
+}
 
-/// The scene's obstacles that are discs, in lattice units, ids -1, -2, …
-std::vector<Disc> obstacle_discs(const Scene& scene, const Plan& plan);
+/// The scene's obstacles that are discs or spheres, in lattice units, ids -1, -2, …
+std::vector<Body> obstacle_bodies(const Scene& scene, const Plan& plan);
 
 }  // namespace lbm

@@ -21,74 +21,136 @@ struct CoveredCells {
   CoveredCollision collision;
 };
 
-/// The sweep of one lattice and collision, with or without solids: every row through the same few
-/// lines, eight cells at a time, the rest of a row with the same source behind a mask.
-template <class Collision, class Solids>
-class RowKernel final : public Kernel {
-  static constexpr bool kSolids = std::is_same_v<Solids, CoveredCells>;
+/// Fetches a row ahead of its sweep into the second-level cache, population by population: in three
+/// dimensions a row's nineteen streams are more than the hardware follows.
+template <class L, class Real>
+class RowPrefetch {
+  static constexpr int kLine = 64 / sizeof(Real);
 
  public:
-  explicit RowKernel(const KernelChoice& c) : collide_(c.parameters), solids_(c) {}
+  /// @param ahead  numbers between the row and the one to fetch; 0: none
+  RowPrefetch(const EsotericPull::Row<L, Real>& row, int n, std::ptrdiff_t ahead)
+      : row_(row), ahead_(ahead), lines_((n + kLine - 1) / kLine + 1), at_(row.in[0] + ahead) {}
 
-  void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover) const override {
-#pragma omp for schedule(static) nowait
-    for (int y = 0; y < f.ny(); ++y) {
-      const EsotericPull::Row row = stream.open(f, y);
-      if constexpr (kSolids)
-        sweep_row_with_solids(row, y, f.nx(), *cover);
-      else
-        sweep_row(row, 0, f.nx());
-      stream.close(f, y);
+  /// To be called for every pack of cells swept.
+  [[gnu::always_inline]] void fetch(int lines) {
+    for (int k = 0; k < lines; ++k) {
+      __builtin_prefetch(at_, 1, 2);
+      at_ += kLine;
+      if (++line_ < lines_) continue;
+      line_ = 0;
+      if (q_ < L::Q - 1) ++q_;
+      at_ = row_.in[q_] + ahead_;
     }
   }
 
  private:
+  const EsotericPull::Row<L, Real>& row_;
+  std::ptrdiff_t ahead_;
+  int lines_, line_ = 0, q_ = 0;
+  const Real* at_;
+};
+
+/// The sweep of one lattice, precision and collision, with or without solids: every row through the
+/// same few lines, a pack of cells at a time, the rest of a row with the same source behind a mask.
+/// Covered cells collide in double precision whatever the populations are stored in.
+template <class Collision, class Solids, class Real>
+class RowKernel final : public Kernel {
+  using L = typename Collision::Set;
+  using V = PackOf<Real>;
+  using Row = EsotericPull::Row<L, Real>;
+  static constexpr bool kSolids = std::is_same_v<Solids, CoveredCells>;
+  static constexpr int kWidth = V::size();
+
+ public:
+  explicit RowKernel(const KernelChoice& c) : collide_(c.parameters), solids_(c) {}
+
+  void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover,
+             const Rows& rows) const override {
+    const int count = rows.size();
+#pragma omp for schedule(static) nowait
+    for (int r = 0; r < count; ++r) {
+      const auto [y, z] = rows[r];
+      const Row row = stream.open<L, Real>(f, y, z);
+      const std::ptrdiff_t ahead = L::D == 3 && r + 1 < count ? f.stride() : 0;
+      RowPrefetch<L, Real> prefetch(row, f.nx(), ahead);
+      if constexpr (kSolids)
+        sweep_row_with_solids(row, y, z, f.nx(), *cover, prefetch);
+      else
+        sweep_row(row, 0, f.nx(), prefetch);
+      stream.close<L, Real>(f, y, z);
+    }
+  }
+
+  void macroscopic(Populations& f, const EsotericPull& stream, int y, int z, const Vec3& half_force,
+                   std::span<double> rho, const RowVelocity& u) const override {
+    const Row row = stream.open<L, Real>(f, y, z);  // makes the ends ready; may be repeated
+    const auto cells = [&](int x, const auto& lanes) {
+      Pack g[L::Q];
+      unroll<L::Q>([&](auto q) { g[q] = lanes.load(row.in[q] + x); });
+      const Moments<L, Pack> m = moments<L>(g);
+      const Pack inverse = Pack(1.0) / (m.drho + Pack(1.0));
+      lanes.store(&rho[x], m.drho + Pack(1.0));
+      for (int a = 0; a < L::D; ++a)
+        lanes.store(&u[a][x], (m.j[a] + Pack(half_force[a])) * inverse);
+    };
+    int x = 0;
+    for (; x + kPackWidth <= f.nx(); x += kPackWidth) cells(x, AllLanes<Pack>());
+    if (x < f.nx()) cells(x, FirstLanes<Pack>(f.nx() - x));
+  }
+
+ private:
+  using Prefetch = RowPrefetch<L, Real>;
+
   /// Pure fluid from cell x to cell end.
-  void sweep_row(const EsotericPull::Row& row, int x, int end) const {
-    for (; x + kPackWidth <= end; x += kPackWidth) fluid(row, x, AllLanes());
-    if (x < end) fluid(row, x, FirstLanes(end - x));
+  [[gnu::always_inline]] void sweep_row(const Row& row, int x, int end, Prefetch& prefetch) const {
+    for (; x + kWidth <= end; x += kWidth) {
+      if constexpr (L::D == 3) prefetch.fetch(L::Q + 3);
+      fluid(row, x, AllLanes<V>());
+    }
+    if (x < end) fluid(row, x, FirstLanes<V>(end - x));
   }
 
   /// Runs of pure fluid between the covered blocks: the first loop never asks about solids.
-  void sweep_row_with_solids(const EsotericPull::Row& row, int y, int n, CoverMap& cover) const {
+  void sweep_row_with_solids(const Row& row, int y, int z, int n, CoverMap& cover,
+                             Prefetch& prefetch) const {
     for (int b = 0; b < cover.blocks_per_row(); ++b) {
-      const int next = cover.next_covered(y, b);
-      sweep_row(row, b * kPackWidth, std::min(next * kPackWidth, n));
+      const int next = cover.next_covered(y, z, b);
+      sweep_row(row, b * kPackWidth, std::min(next * kPackWidth, n), prefetch);
       if (next == cover.blocks_per_row()) return;
       const int x = next * kPackWidth;
+      if constexpr (L::D == 3) prefetch.fetch(L::Q + 3);
+      CoverBlock<L::D>& block = *cover.block<L::D>(y, z, next);
       if (x + kPackWidth <= n)
-        covered(row, x, *cover.block(y, next), AllLanes());
+        covered(row, x, block, AllLanes<Pack>());
       else
-        covered(row, x, *cover.block(y, next), FirstLanes(n - x));
+        covered(row, x, block, FirstLanes<Pack>(n - x));
       b = next;
     }
   }
 
-  template <class Lanes>
-  [[gnu::always_inline]] void fluid(const EsotericPull::Row& row, int x, const Lanes& lanes) const {
-    Pack f[D2Q9::Q];
-    unroll<D2Q9::Q>([&](auto q)
-                        __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
+  template <class Access>
+  [[gnu::always_inline]] void fluid(const Row& row, int x, const Access& lanes) const {
+    V f[L::Q];
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
     collide_(f);
-    unroll<D2Q9::Q>([&](auto q)
-                        __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
   }
 
-  template <class Lanes>
-  [[gnu::noinline]] void covered(const EsotericPull::Row& row, int x, CoverMap::Block& block,
-                                 const Lanes& lanes) const {
-    Pack f[D2Q9::Q];
-    unroll<D2Q9::Q>([&](auto q)
-                        __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
-    const auto force =
-        solids_.collision.apply(f, collide_,
-                                CoveredCollision::Cell<Pack>{
-                                    load<Pack>(block.weight.data()), load<Pack>(block.layer.data()),
-                                    load<Pack>(block.us.data()), load<Pack>(block.vs.data())});
-    unroll<D2Q9::Q>([&](auto q)
-                        __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
-    store(block.fx.data(), force.x);
-    store(block.fy.data(), force.y);
+  template <class Access>
+  [[gnu::noinline]] void covered(const Row& row, int x, CoverBlock<L::D>& block,
+                                 const Access& lanes) const {
+    Pack f[L::Q];
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
+    CoveredCollision::Cell<L, Pack> cell{
+        load<Pack>(block.weight.data()), load<Pack>(block.layer.data()), {}};
+    unroll<L::D>([&](auto a) __attribute__((always_inline)) {
+      cell.us[a] = load<Pack>(block.u[a].data());
+    });
+    const Vector<L, Pack> force = solids_.collision.template apply<L>(f, collide_, cell);
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
+    unroll<L::D>([&](auto a)
+                     __attribute__((always_inline)) { store(block.force[a].data(), force[a]); });
   }
 
   Collision collide_;

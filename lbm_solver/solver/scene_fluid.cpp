@@ -22,72 +22,73 @@ int border(const Scene& s, const Plan& p, double at, int axis, const std::string
   return static_cast<int>(whole);
 }
 
+/// The cells of a side that a boundary takes.
+Opening opening(const Scene& s, const Plan& p, const BoundaryScene& b) {
+  Opening o = Opening::whole(p.domain, b.side);
+  const int axis = axis_of(b.side);
+  const int along[] = {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
+  for (int k = 0; k < s.box.dimension - 1; ++k) {
+    if (b.from[k]) o.begin[k] = border(s, p, *b.from[k], along[k], "boundary.from");
+    if (b.to[k]) o.end[k] = border(s, p, *b.to[k], along[k], "boundary.to");
+    if (o.begin[k] >= o.end[k])
+      throw InputError(s.file + ": boundary", "has from at or beyond to", "give from < to");
+    o.closed[k] = o.closed[k] && o.begin[k] == 0 && o.end[k] == p.domain.cells()[along[k]];
+  }
+  return o;
+}
+
 void add_boundary(const Scene& s, const Plan& p, const BoundaryScene& b, Fluid& fluid) {
-  const bool vertical = b.side == SideName::Left || b.side == SideName::Right;
-  const int axis = vertical ? 1 : 0, n = vertical ? p.domain.ny : p.domain.nx;
-  const int begin = b.from ? border(s, p, *b.from, axis, "boundary.from") : 0;
-  const int end = b.to ? border(s, p, *b.to, axis, "boundary.to") : n;
-  if (begin >= end)
-    throw InputError(s.file + ": boundary", "has from at or beyond to", "give from < to");
-  const bool closed =
-      begin == 0 && end == n && (vertical ? p.domain.y : p.domain.x) == Side::Periodic;
-  auto links = side_links(p.domain.nx, p.domain.ny, b.side, begin, end, closed);
+  const Opening o = opening(s, p, b);
   const InTime in_time{b.ramp / p.units.dt,
                        b.frequency > 0.0 ? 1.0 / (b.frequency * p.units.dt) : 0.0};
   if (b.kind == BoundaryScene::Kind::Velocity) {
-    fluid.add(std::make_unique<VelocityPatch>(std::move(links),
+    fluid.add(std::make_unique<VelocityPatch>(fluid.lattice(), fluid.links(o),
                                               p.units.to_lattice_velocity(b.velocity), b.parabolic,
-                                              begin, end, in_time));
+                                              o, in_time));
     return;
   }
   const double drho = b.pressure / p.units.pressure();
   if (b.kind == BoundaryScene::Kind::Pressure) {
-    fluid.add(std::make_unique<PressurePatch>(std::move(links), b.side, drho, in_time));
+    fluid.add(std::make_unique<PressurePatch>(fluid.links(o), b.side, drho, in_time));
     return;
   }
-  const double length = std::max(p.domain.nx, p.domain.ny);
-  fluid.add(std::make_unique<OutflowPatch>(std::move(links), b.side, drho,
+  const double length = std::max({p.domain.nx, p.domain.ny, p.domain.nz});
+  fluid.add(std::make_unique<OutflowPatch>(fluid.links(o), b.side, drho,
                                            1.0 / (std::numbers::sqrt3 * length)));
 }
 
 void add_pressure_jump(const Plan& p, int axis, double jump, Fluid& fluid) {
-  const SideName sides[] = {axis == 0 ? SideName::Left : SideName::Bottom,
-                            axis == 0 ? SideName::Right : SideName::Top};
-  const int n = axis == 0 ? p.domain.ny : p.domain.nx;
-  const bool closed = (axis == 0 ? p.domain.y : p.domain.x) == Side::Periodic;
   double sign = 1.0;
-  for (const SideName side : sides) {
-    fluid.add(std::make_unique<PressureJumpPatch>(
-        side_links(p.domain.nx, p.domain.ny, side, 0, n, closed), side,
-        sign * jump / p.units.pressure(), InTime{}));
+  for (int high = 0; high < 2; ++high) {
+    const auto side = static_cast<SideName>(2 * axis + high);
+    fluid.add(std::make_unique<PressureJumpPatch>(fluid.links(Opening::whole(p.domain, side)), side,
+                                                  sign * jump / p.units.pressure(), InTime{}));
     sign = -1.0;
   }
 }
 
 void add_block(const Scene& s, const Plan& p, const ObstacleScene& o, Fluid& fluid) {
-  int corner[4];
-  for (int axis = 0; axis < 2; ++axis) {
-    corner[axis] = border(s, p, o.from[axis], axis, "obstacle.from");
-    corner[2 + axis] = border(s, p, o.to[axis], axis, "obstacle.to");
+  Cell3 from{0, 0, 0}, to{0, 0, 1};
+  for (int axis = 0; axis < s.box.dimension; ++axis) {
+    from[axis] = border(s, p, o.from[axis], axis, "obstacle.from");
+    to[axis] = border(s, p, o.to[axis], axis, "obstacle.to");
+    if (from[axis] < 0 || to[axis] > p.domain.cells()[axis] || from[axis] >= to[axis])
+      throw InputError(s.file + ": obstacle",
+                       fmt::format("{:.6g} … {:.6g} m in {} is empty or outside the box",
+                                   o.from[axis], o.to[axis], "xyz"[axis]),
+                       "give its lower and upper corner");
   }
-  if (corner[0] < 0 || corner[1] < 0 || corner[2] > p.domain.nx || corner[3] > p.domain.ny ||
-      corner[0] >= corner[2] || corner[1] >= corner[3])
-    throw InputError(
-        s.file + ": obstacle",
-        fmt::format("[{:.6g}, {:.6g}] … [{:.6g}, {:.6g}] m is empty or outside the box", o.from.x(),
-                    o.from.y(), o.to.x(), o.to.y()),
-        "give its lower left and upper right corner");
-  fluid.add_wall(corner[0], corner[1], corner[2], corner[3]);
+  fluid.add_wall(from, to);
 }
 
 /// Velocity and pressure deviation of the initial state, lattice units, at a place in units of the
 /// box.
 struct Start {
   double drho;
-  Vec2 u;
+  Vec3 u;
 };
 Start start(const InitialScene& i, const Units& units, double x, double y) {
-  const Vec2 u = units.to_lattice_velocity(i.velocity);
+  const Vec3 u = units.to_lattice_velocity(i.velocity);
   const double k = 2.0 * std::numbers::pi, u0 = u.x();
   switch (i.kind) {
     case InitialScene::Kind::Rest:
@@ -110,41 +111,40 @@ Start start(const InitialScene& i, const Units& units, double x, double y) {
 
 }  // namespace
 
-std::vector<Disc> obstacle_discs(const Scene& s, const Plan& p) {
-  std::vector<Disc> discs;
+std::vector<Body> obstacle_bodies(const Scene& s, const Plan& p) {
+  std::vector<Body> bodies;
   for (const ObstacleScene& o : s.obstacles)
-    if (o.disc)
-      discs.push_back({-static_cast<std::int64_t>(discs.size() + 1),
-                       p.units.to_lattice_position(o.centre),
-                       0.5 * o.diameter / p.units.dx,
-                       {0.0, 0.0},
-                       p.units.to_lattice_spin(o.spin),
-                       o.hollow});
-  return discs;
+    if (o.round)
+      bodies.push_back({-static_cast<std::int64_t>(bodies.size() + 1),
+                        p.units.to_lattice_position(o.centre), 0.5 * o.diameter / p.units.dx,
+                        Vec3(), p.units.to_lattice_spin(o.spin), o.hollow});
+  return bodies;
 }
 
-Fluid make_fluid(const Scene& s, const Plan& p) {
-  Fluid fluid(p.domain, p.kernel);
+Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
+  Fluid fluid(ranks, p.kernel);
   for (const BoundaryScene& b : s.boundaries) add_boundary(s, p, b, fluid);
-  for (int axis = 0; axis < 2; ++axis)
+  for (int axis = 0; axis < s.box.dimension; ++axis)
     if (s.box.pressure_jump[axis] != 0.0)
       add_pressure_jump(p, axis, s.box.pressure_jump[axis], fluid);
   for (const ObstacleScene& o : s.obstacles)
-    if (!o.disc) add_block(s, p, o, fluid);
-  if (p.scheme != known_schemes().front())
-    fluid.use(make_scheme(
-        p.scheme, p.domain,
-        {p.kernel.force ? 0.5 * Vec2(p.kernel.parameters.force_x, p.kernel.parameters.force_y)
-                        : Vec2(0.0, 0.0),
-         s.numerics.spring_stiffness}));
+    if (!o.round) add_block(s, p, o, fluid);
+  if (p.scheme != known_schemes().front()) {
+    const auto& k = p.kernel.parameters;
+    const Vec3 force = p.kernel.force ? Vec3(k.force_x, k.force_y, k.force_z) : Vec3();
+    fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(),
+                          {0.5 * force, s.numerics.spring_stiffness}));
+  }
   fluid.prepare_walls();
-  if (fluid.has_solids()) fluid.place(obstacle_discs(s, p));
-  if (s.initial.kind != InitialScene::Kind::Rest || p.kernel.force)
-    for (int y = 0; y < p.domain.ny; ++y)
-      for (int x = 0; x < p.domain.nx; ++x) {
-        const Start at =
-            start(s.initial, p.units, (x + 0.5) / p.domain.nx, (y + 0.5) / p.domain.ny);
-        fluid.set_equilibrium(x, y, 1.0 + at.drho, at.u);
+  if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
+  if (s.initial.kind == InitialScene::Kind::Rest && !p.kernel.force) return fluid;
+  const Block& cells = ranks.cells();
+  for (int z = 0; z < cells.size[2]; ++z)
+    for (int y = 0; y < cells.size[1]; ++y)
+      for (int x = 0; x < cells.size[0]; ++x) {
+        const Start at = start(s.initial, p.units, (x + cells.begin[0] + 0.5) / p.domain.nx,
+                               (y + cells.begin[1] + 0.5) / p.domain.ny);
+        fluid.set_equilibrium({x, y, z}, 1.0 + at.drho, at.u);
       }
   return fluid;
 }

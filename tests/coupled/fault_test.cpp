@@ -327,7 +327,7 @@ TEST(Launch, TheSolidAlone) {
 TEST(Launch, TheFluidTwice) {
   SettlingDisc scene;
   expect_end(test::run(mpirun({kLbm}, {kLbm}), scene.folder(), 30.0), 2,
-             {"2 ranks of lbm were started"});
+             {"no solid program was started beside lbm"});
 }
 
 TEST(Launch, TheSolidTwice) {

@@ -1,61 +1,68 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// What a straightforward object-oriented code does, for comparison: two lattices, the nine
+/// What a straightforward object-oriented code does, for comparison: two lattices, the
 /// populations of a cell side by side, one virtual collision a cell, TRT, periodic.
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "lbm_solver/base/vec3.h"
 #include "lbm_solver/collision/two_rates.h"
 
 namespace test {
 
+template <class L>
 class CellCollision {
  public:
   virtual ~CellCollision() = default;
-  virtual void collide(double (&f)[9]) const = 0;
+  virtual void collide(double (&f)[L::Q]) const = 0;
 };
 
-class TrtCell final : public CellCollision {
+template <class L>
+class TrtCell final : public CellCollision<L> {
  public:
   explicit TrtCell(double tau) : trt_({.tau = tau}) {}
-  void collide(double (&f)[9]) const override { trt_(f); }
+  void collide(double (&f)[L::Q]) const override { trt_(f); }
 
  private:
-  lbm::TwoRates<lbm::MagicRate, lbm::Laminar, lbm::NoForce> trt_;
+  lbm::TwoRates<L, lbm::MagicRate, lbm::Laminar, lbm::NoForce<L>> trt_;
 };
 
+template <class L>
 class AosLattice {
  public:
-  AosLattice(int nx, int ny, double tau)
-      : nx_(nx),
-        ny_(ny),
-        now_(static_cast<std::size_t>(nx) * ny),
+  AosLattice(const lbm::Cell3& cells, double tau)
+      : cells_(cells),
+        now_(static_cast<std::size_t>(cells[0]) * cells[1] * cells[2]),
         next_(now_.size()),
-        collision_(std::make_unique<TrtCell>(tau)) {}
+        collision_(std::make_unique<TrtCell<L>>(tau)) {}
 
   void step() {
-    for (int y = 0; y < ny_; ++y)
-      for (int x = 0; x < nx_; ++x) {
-        Cell f = now_[static_cast<std::size_t>(y) * nx_ + x];
-        collision_->collide(f.f);
-        for (int q = 0; q < 9; ++q) {
-          const int to_x = wrap(x + lbm::D2Q9::c[q][0], nx_),
-                    to_y = wrap(y + lbm::D2Q9::c[q][1], ny_);
-          next_[static_cast<std::size_t>(to_y) * nx_ + to_x].f[q] = f.f[q];
+    for (int z = 0; z < cells_[2]; ++z)
+      for (int y = 0; y < cells_[1]; ++y)
+        for (int x = 0; x < cells_[0]; ++x) {
+          Cell f = now_[index(x, y, z)];
+          collision_->collide(f.f);
+          for (int q = 0; q < L::Q; ++q)
+            next_[index(wrap(x + L::c[q][0], cells_[0]), wrap(y + L::c[q][1], cells_[1]),
+                        wrap(z + L::c[q][2], cells_[2]))]
+                .f[q] = f.f[q];
         }
-      }
     now_.swap(next_);
   }
 
  private:
   struct Cell {
-    double f[9] = {};
+    double f[L::Q] = {};
   };
-  static int wrap(int a, int n) { return a < 0 ? a + n : a >= n ? a - n : a; }
-  int nx_, ny_;
+  static int wrap(int v, int n) { return v < 0 ? n - 1 : v == n ? 0 : v; }
+  std::size_t index(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * cells_[1] + y) * cells_[0] + x;
+  }
+
+  lbm::Cell3 cells_;
   std::vector<Cell> now_, next_;
-  std::unique_ptr<CellCollision> collision_;
+  std::unique_ptr<CellCollision<L>> collision_;
 };
 
 }  // namespace test

@@ -19,73 +19,104 @@ namespace {
 
 using namespace lbm;
 
-constexpr double kBytes = 2.0 * D2Q9::Q * sizeof(double);  // that an update must move
-
 /// One line of the result.
 struct Entry {
   std::string name, collision;
   int grid = 0, threads = 1;
   double covered = 0.0, mlups = 0.0;
-  bool moving = false;      ///< the discs are placed anew in each step
+  bool moving = false;      ///< the bodies are placed anew in each step
   bool one_by_one = false;  ///< a parallel region a step instead of one for all
+  std::string lattice = "D2Q9";
+  Precision precision = Precision::Double;
 };
 
-/// Discs of ten cells on a square lattice, moving slowly, that cover a part of the grid.
-std::vector<Disc> packing(int n, double covered) {
-  std::vector<Disc> discs;
-  if (covered <= 0.0) return discs;
-  const double spacing = std::sqrt(25.0 * 3.14159265 / covered);
-  const int count = static_cast<int>(n / spacing);
-  for (int j = 0; j < count; ++j)
-    for (int i = 0; i < count; ++i)
-      discs.push_back({static_cast<std::int64_t>(discs.size() + 1),
-                       {(i + 0.5) * n / count, (j + 0.5) * n / count + 0.3},
-                       5.0,
-                       {0.01, 0.0},
-                       0.0});
-  return discs;
+Domain box(const Entry& e) {
+  const int n = e.grid;
+  if (lattice(e.lattice).D == 2) return {n, n, Side::Periodic, Side::Periodic};
+  return {n, n, Side::Periodic, Side::Periodic, n, Side::Periodic};
+}
+
+double cells(const Entry& e) {
+  return std::pow(static_cast<double>(e.grid), lattice(e.lattice).D);
+}
+
+/// Bytes that an update must move.
+double bytes(const Entry& e) {
+  return 2.0 * lattice(e.lattice).Q * (e.precision == Precision::Double ? 8.0 : 4.0);
+}
+
+/// Discs or spheres of ten cells on a square or cubic lattice, moving slowly, that cover a part of
+/// the box.
+std::vector<Body> packing(const Entry& e) {
+  std::vector<Body> bodies;
+  if (e.covered <= 0.0) return bodies;
+  const bool flat = lattice(e.lattice).D == 2;
+  constexpr double pi = 3.14159265358979;
+  const double volume = flat ? 25.0 * pi : 4.0 / 3.0 * 125.0 * pi;
+  const double spacing = std::pow(volume / e.covered, flat ? 0.5 : 1.0 / 3.0);
+  const int count = static_cast<int>(std::lround(e.grid / spacing)), layers = flat ? 1 : count;
+  const auto at = [&](int i) { return (i + 0.5) * e.grid / count; };
+  for (int k = 0; k < layers; ++k)
+    for (int j = 0; j < count; ++j)
+      for (int i = 0; i < count; ++i)
+        bodies.push_back({static_cast<std::int64_t>(bodies.size() + 1),
+                          {at(i), at(j) + 0.3, flat ? 0.0 : at(k) + 0.17},
+                          5.0,
+                          {0.01, 0.0}});
+  return bodies;
 }
 
 void stir(Fluid& fluid) {
   const Domain& d = fluid.domain();
-  for (int y = 0; y < d.ny; ++y)
-    for (int x = 0; x < d.nx; ++x)
-      fluid.set_equilibrium(x, y, 1.0, {0.02 * std::sin(0.01 * y), 0.02 * std::cos(0.013 * x)});
+  for (int z = 0; z < d.nz; ++z)
+    for (int y = 0; y < d.ny; ++y)
+      for (int x = 0; x < d.nx; ++x)
+        fluid.set_equilibrium({x, y, z}, 1.0,
+                              {0.02 * std::sin(0.01 * y), 0.02 * std::cos(0.013 * x)});
 }
 
-int steps_for(int n) {
-  return std::max(2, static_cast<int>(4e6 / (static_cast<double>(n) * n)));
+int steps_for(const Entry& e) {
+  return std::max(2, static_cast<int>(4e6 / cells(e)));
 }
 
 void kernel_benchmark(benchmark::State& state, const Entry& e, KernelChoice choice) {
   omp_set_num_threads(e.threads);
   choice.parameters.tau = 0.8;
-  Fluid fluid({e.grid, e.grid, Side::Periodic, Side::Periodic}, choice);
+  choice.lattice = e.lattice;
+  choice.precision = e.precision;
+  Fluid fluid(box(e), choice);
   stir(fluid);
-  std::vector<Disc> discs = packing(e.grid, e.covered);
-  if (choice.solid_term != "none") fluid.place(discs);
-  const int steps = steps_for(e.grid);
+  std::vector<Body> bodies = packing(e);
+  if (choice.solid_term != "none") fluid.place(bodies);
+  const int steps = steps_for(e);
   const bool together = e.covered == 0.0 && !e.one_by_one;
   for (auto _ : state) {
     if (together) fluid.advance(steps);
     for (int s = 0; s < (together ? 0 : steps); ++s) {
       if (e.moving) {
-        for (Disc& d : discs) d.centre += d.velocity;
-        fluid.place(discs);
+        for (Body& b : bodies) b.centre += b.velocity;
+        fluid.place(bodies);
       }
       fluid.step();
       if (e.covered > 0.0) benchmark::DoNotOptimize(fluid.loads());
     }
   }
-  state.SetItemsProcessed(state.iterations() * steps * e.grid * e.grid);
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * steps * cells(e)));
+}
+
+template <class L>
+void aos_steps(benchmark::State& state, const Entry& e) {
+  test::AosLattice<L> lattice(box(e).cells(), 0.8);
+  const int steps = std::max(1, steps_for(e) / 4);
+  for (auto _ : state)
+    for (int s = 0; s < steps; ++s) lattice.step();
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * steps * cells(e)));
 }
 
 void aos_benchmark(benchmark::State& state, const Entry& e) {
-  test::AosLattice lattice(e.grid, e.grid, 0.8);
-  const int steps = steps_for(e.grid);
-  for (auto _ : state)
-    for (int s = 0; s < steps; ++s) lattice.step();
-  state.SetItemsProcessed(state.iterations() * steps * e.grid * e.grid);
+  if (e.lattice == "D2Q9") aos_steps<D2Q9>(state, e);
+  if (e.lattice == "D3Q19") aos_steps<D3Q19>(state, e);
+  if (e.lattice == "D3Q27") aos_steps<D3Q27>(state, e);
 }
 
 /// One part of a particle's cost, for 49 and for 10 000 discs of ten cells: items are particles.
@@ -93,40 +124,49 @@ void particle_benchmark(benchmark::State& state, int count, const std::string& p
   omp_set_num_threads(1);
   const int side = static_cast<int>(std::round(std::sqrt(count))), n = 16 * side;
   CoverMap cover({n, n, Side::Periodic, Side::Periodic}, {WeightRule::Viscous, 0.8});
-  std::vector<Disc> discs;
+  std::vector<Body> discs;
   for (int i = 0; i < count; ++i)
     discs.push_back(
         {i, {8.0 + 16.0 * (i % side), 8.3 + 16.0 * (i / side)}, 5.0, {2e-2, 0.0}, 1e-4});
   cover.update(discs);
   for (auto _ : state) {
     if (part == "map")
-      for (Disc& d : discs) d.centre += d.velocity;
+      for (Body& d : discs) d.centre += d.velocity;
     if (part == "velocity")
-      for (Disc& d : discs) d.spin += 1e-9;
+      for (Body& d : discs) d.spin.z() += 1e-9;
     if (part == "loads")
       benchmark::DoNotOptimize(cover.loads());
     else if (part == "trace")
-      for (const Disc& d : discs) benchmark::DoNotOptimize(trace_boundary(d.centre, d.radius));
+      for (const Body& d : discs) benchmark::DoNotOptimize(trace_boundary(d.centre, d.radius));
     else
       cover.update(discs);
   }
   state.SetItemsProcessed(state.iterations() * count);
 }
 
-/// Updates nine arrays in place, as a sweep does without any arithmetic: items are lattice updates.
+template <class Real>
+void touch_rows(Populations& f) {
+  const int rows = f.ny() * f.nz();
+#pragma omp parallel for schedule(static)
+  for (int r = 0; r < rows; ++r)
+    for (int q = 0; q < f.lattice().Q; ++q) {
+      Real* row = f.row<Real>(q, r % f.ny(), r / f.ny());
+      for (int x = 0; x < f.nx(); ++x) row[x] = row[x] * Real(1.0000001);
+    }
+}
+
+/// Updates all arrays in place, as a sweep does without any arithmetic: items are lattice updates.
 void bandwidth_benchmark(benchmark::State& state, const Entry& e) {
   omp_set_num_threads(e.threads);
-  Populations f(e.grid, e.grid);
+  Populations f(lattice(e.lattice), box(e).cells(), e.precision);
   for (auto _ : state) {
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < e.grid; ++y)
-      for (int q = 0; q < D2Q9::Q; ++q) {
-        double* row = f.row(q, y);
-        for (int x = 0; x < e.grid; ++x) row[x] = row[x] * 1.0000001;
-      }
+    if (e.precision == Precision::Double)
+      touch_rows<double>(f);
+    else
+      touch_rows<float>(f);
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(state.iterations() * e.grid * e.grid);
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * cells(e)));
 }
 
 /// Keeps the medians of the repetitions and prints nothing.
@@ -149,59 +189,64 @@ void add(const Entry& e, Function&& run) {
   benchmark::RegisterBenchmark(e.name.c_str(), run)->Repetitions(7)->MinTime(0.15)->UseRealTime();
 }
 
-std::string label(const std::string& what, int grid, int threads) {
-  return fmt::format("{} {}² {}t", what, grid, threads);
+const char* text(Precision p) {
+  return p == Precision::Double ? "double" : "single";
 }
 
-void register_all(const std::vector<int>& grids, int threads) {
-  for (const int n : grids) {
-    for (int t = 1; t <= threads; ++t) {
-      const Entry bandwidth{label("bandwidth", n, t), "", n, t};
-      add(bandwidth, [=](benchmark::State& s) { bandwidth_benchmark(s, bandwidth); });
-      const Entry steps{label("trt one by one", n, t), "trt", n, t, 0.0, 0.0, false, true};
-      add(steps, [=](benchmark::State& s) { kernel_benchmark(s, steps, {.collision = "trt"}); });
-      for (const std::string& collision : known_collisions()) {
-        const Entry pure{label(collision, n, t), collision, n, t};
-        add(pure,
-            [=](benchmark::State& s) { kernel_benchmark(s, pure, {.collision = collision}); });
-      }
-    }
-    for (const char* collision : {"bgk", "trt"}) {
-      const Entry les{label(std::string(collision) + "+les", n, 1), collision, n, 1};
-      add(les, [=](benchmark::State& s) {
-        kernel_benchmark(s, les,
-                         {.collision = collision,
-                          .turbulence = "smagorinsky",
-                          .parameters = {.smagorinsky = 0.1}});
-      });
-    }
-    const Entry force{label("trt+force", n, 1), "trt", n, 1};
-    add(force, [=](benchmark::State& s) {
-      kernel_benchmark(s, force,
-                       {.collision = "trt", .force = true, .parameters = {.force_x = 1e-7}});
-    });
-    for (const double covered : {0.0, 0.1, 0.4}) {
-      const Entry e{label(fmt::format("trt covered {:.0f} %", 100 * covered), n, 1), "trt", n, 1,
-                    covered};
-      add(e, [=](benchmark::State& s) {
-        kernel_benchmark(s, e, {.collision = "trt", .solid_term = "layered_holdych"});
-      });
-    }
-    for (const double covered : {0.1, 0.4}) {
-      const Entry e{label(fmt::format("trt coupled {:.0f} %", 100 * covered), n, 1),
-                    "trt",
-                    n,
-                    1,
-                    covered,
-                    0.0,
-                    true};
-      add(e, [=](benchmark::State& s) {
-        kernel_benchmark(s, e, {.collision = "trt", .solid_term = "layered_holdych"});
-      });
-    }
-    const Entry aos{label("AoS two lattices", n, 1), "trt", n, 1};
-    add(aos, [=](benchmark::State& s) { aos_benchmark(s, aos); });
+/// What an entry runs on.
+struct Setting {
+  std::string lattice;
+  Precision precision;
+  int grid;
+
+  Entry entry(const std::string& what, int threads = 1) const {
+    Entry e;
+    e.name = label(what, threads);
+    e.grid = grid;
+    e.threads = threads;
+    e.lattice = lattice;
+    e.precision = precision;
+    return e;
   }
+  std::string label(const std::string& what, int threads = 1) const {
+    return fmt::format("{} {} {} {} {}t", lattice, text(precision), what, grid, threads);
+  }
+};
+
+void add_kernel(Entry e, const KernelChoice& choice) {
+  e.collision = choice.collision;
+  add(e, [=](benchmark::State& s) { kernel_benchmark(s, e, choice); });
+}
+
+void register_setting(const Setting& on, int threads) {
+  for (int t = 1; t <= threads; ++t) {
+    const Entry bandwidth = on.entry("bandwidth", t);
+    add(bandwidth, [=](benchmark::State& s) { bandwidth_benchmark(s, bandwidth); });
+    Entry one_by_one = on.entry("trt one by one", t);
+    one_by_one.one_by_one = true;
+    add_kernel(one_by_one, {.collision = "trt"});
+    for (const std::string& collision : known_collisions())
+      add_kernel(on.entry(collision, t), {.collision = collision});
+  }
+  for (const char* collision : {"bgk", "trt"})
+    add_kernel(
+        on.entry(std::string(collision) + "+les"),
+        {.collision = collision, .turbulence = "smagorinsky", .parameters = {.smagorinsky = 0.1}});
+  add_kernel(on.entry("trt+force"),
+             {.collision = "trt", .force = true, .parameters = {.force_x = 1e-7}});
+  const KernelChoice solids{.collision = "trt", .solid_term = "layered_holdych"};
+  for (const double covered : {0.0, 0.1, 0.15, 0.4})
+    for (const bool moving : {false, true}) {
+      if (covered == 0.0 && moving) continue;
+      Entry e =
+          on.entry(fmt::format("trt {} {:.0f} %", moving ? "coupled" : "covered", 100 * covered));
+      e.covered = covered;
+      e.moving = moving;
+      add_kernel(e, solids);
+    }
+  const Entry aos = on.entry("AoS two lattices");
+  if (on.precision == Precision::Double)
+    add(aos, [=](benchmark::State& s) { aos_benchmark(s, aos); });
 }
 
 double rate_of(const Collector& c, const std::string& name) {
@@ -211,25 +256,27 @@ double rate_of(const Collector& c, const std::string& name) {
 
 nlohmann::json report(const Collector& c) {
   nlohmann::json list = nlohmann::json::array();
-  fmt::print("{:32} {:>8} {:>6} {:>8} {:>12}\n", "kernel", "MLUPS", "roof", "vs_pure",
+  fmt::print("{:42} {:>8} {:>6} {:>8} {:>12}\n", "kernel", "MLUPS", "roof", "vs_pure",
              "vs_baseline");
   for (const Entry& e : entries) {
     const double rate = rate_of(c, e.name);
     if (std::isnan(rate)) continue;
     if (e.grid == 0) {
-      fmt::print("{:32} {:>8.0f} ns a particle\n", e.name, 1e9 / rate);
+      fmt::print("{:42} {:>8.0f} ns a particle\n", e.name, 1e9 / rate);
       list.push_back({{"name", e.name}, {"nanoseconds_a_particle", 1e9 / rate}});
       continue;
     }
-    const double roof = rate / rate_of(c, label("bandwidth", e.grid, e.threads));
-    const double pure = rate / rate_of(c, label("trt", e.grid, e.threads));
-    const double baseline = rate / rate_of(c, label("AoS two lattices", e.grid, 1));
-    fmt::print("{:32} {:>8.0f} {:>6.2f} {:>8.2f} {:>12.1f}\n", e.name, rate * 1e-6, roof, pure,
+    const Setting on{e.lattice, e.precision, e.grid};
+    const double roof = rate / rate_of(c, on.label("bandwidth", e.threads));
+    const double pure = rate / rate_of(c, on.label("trt", e.threads));
+    const Setting in_double{e.lattice, Precision::Double, e.grid};
+    const double baseline = rate / rate_of(c, in_double.label("AoS two lattices"));
+    fmt::print("{:42} {:>8.0f} {:>6.2f} {:>8.2f} {:>12.1f}\n", e.name, rate * 1e-6, roof, pure,
                baseline);
     list.push_back({{"name", e.name},
-                    {"lattice", "D2Q9"},
+                    {"lattice", e.lattice},
                     {"collision", e.collision},
-                    {"precision", "double"},
+                    {"precision", text(e.precision)},
                     {"grid", e.grid},
                     {"threads", e.threads},
                     {"covered", e.covered},
@@ -237,7 +284,7 @@ nlohmann::json report(const Collector& c) {
                     {"roof", roof},
                     {"vs_pure", pure},
                     {"vs_baseline", baseline},
-                    {"gigabytes_per_second", rate * kBytes * 1e-9}});
+                    {"gigabytes_per_second", rate * bytes(e) * 1e-9}});
   }
   return list;
 }
@@ -247,15 +294,28 @@ nlohmann::json report(const Collector& c) {
 int main(int argc, char** argv) {
   std::string filter = ".", json;
   int threads = 2;
-  std::vector<int> grids{200, 1600};
+  std::vector<int> grids;
+  std::vector<std::string> lattices{"D2Q9"}, precisions{"double"};
   CLI::App app{"Speed of every kernel, as ratios in one run"};
   app.add_option("--filter", filter,
                  "regular expression on the names; bandwidth is always measured");
   app.add_option("--json", json, "write the table to this file");
   app.add_option("--threads", threads, "largest number of threads");
-  app.add_option("--grid", grids, "cells along a side");
+  app.add_option("--grid", grids, "cells along a side (else 200 and 1600, in 3D 32 and 160)");
+  app.add_option("--lattice", lattices, "D2Q9, D3Q19, D3Q27")
+      ->check(CLI::IsMember(known_lattices()));
+  app.add_option("--precision", precisions, "double, single")
+      ->check(CLI::IsMember({"double", "single"}));
   CLI11_PARSE(app, argc, argv);
-  register_all(grids, threads);
+  for (const std::string& lattice : lattices)
+    for (const std::string& precision : precisions) {
+      const bool flat = lattice == D2Q9::name;
+      const auto sizes = !grids.empty() ? grids : std::vector{flat ? 200 : 32, flat ? 1600 : 160};
+      for (const int grid : sizes)
+        register_setting(
+            {lattice, precision == "double" ? Precision::Double : Precision::Single, grid},
+            threads);
+    }
   for (const int count : {49, 10000})
     for (const char* part : {"map", "velocity", "loads", "trace"})
       add({fmt::format("particles {} {}", count, part)},

@@ -19,7 +19,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "lbm_solver/immersed/disc_fraction.h"
+#include "lbm_solver/immersed/solid_fraction.h"
 #include "lbm_solver/solver/fluid.h"
 #include "tests/reference/disc_area.h"
 
@@ -53,7 +53,7 @@ const std::vector<Row> kRows{
     {"BGK, spring immersed boundary", "bgk", "spring_immersed_boundary", "none"},
 };
 
-Fluid make(const Row& row, const Domain& domain, double tau, const Vec2& force) {
+Fluid make(const Row& row, const Domain& domain, double tau, const Vec3& force) {
   KernelChoice choice{row.collision,
                       "none",
                       force.norm() > 0.0,
@@ -61,7 +61,8 @@ Fluid make(const Row& row, const Domain& domain, double tau, const Vec2& force) 
                       {.tau = tau, .force_x = force.x(), .force_y = force.y()},
                       row.weight};
   Fluid fluid(domain, choice);
-  if (!row.scheme.empty()) fluid.use(make_scheme(row.scheme, domain, {0.5 * force}));
+  if (!row.scheme.empty())
+    fluid.use(make_scheme(row.scheme, domain, fluid.lattice(), {0.5 * force}));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;
@@ -73,7 +74,7 @@ double mean_velocity(Fluid& fluid, int x0, int x1) {
   std::vector<double> rho(d.nx), ux(d.nx), uy(d.nx);
   double sum = 0.0;
   for (int y = 0; y < d.ny; ++y) {
-    fluid.row(y, rho, ux, uy);
+    fluid.row(y, 0, rho, {ux, uy});
     for (int x = x0; x < x1; ++x) sum += ux[x];
   }
   return sum / ((x1 - x0) * d.ny);
@@ -84,13 +85,13 @@ double radius_of(int n) {
 }
 
 /// Error of the drag of a fixed disc, 1; not a number where it blows up.
-double fixed_disc(const Row& row, int n, double tau, const Vec2& offset) {
+double fixed_disc(const Row& row, int n, double tau, const Vec3& offset) {
   const double nu = (tau - 0.5) / 3.0, r = radius_of(n);
   const double u = 0.01 * nu / (2.0 * r);  // Re_D = 0.01
   const double g = kDrag * nu * u / (n * n);
   const Domain domain{n, n, Side::Periodic, Side::Periodic};
   Fluid fluid = make(row, domain, tau, {g, 0.0});
-  const std::vector<Disc> discs{{1, Vec2(n / 2, n / 2) + offset, r, {0.0, 0.0}, 0.0}};
+  const std::vector<Body> discs{{1, Vec3(n / 2, n / 2) + offset, r, {0.0, 0.0}, 0.0}};
   const double relaxation = 0.0155 * n * n / nu;
   const auto last = static_cast<long>(std::max(2000.0, 40.0 * relaxation));
   double before = 0.0, now = 0.0;
@@ -116,7 +117,7 @@ Translation translating_disc(const Row& row, int n, double tau) {
   const double g = -kDrag * nu * u0 / (n * n);
   const Domain domain{n, n, Side::Periodic, Side::Periodic};
   Fluid fluid = make(row, domain, tau, {g, 0.0});
-  Disc disc{1, {0.5 * n, 0.5 * n + 0.23}, r, {u0, 0.0}, 0.0};
+  Body disc{1, {0.5 * n, 0.5 * n + 0.23}, r, {u0, 0.0}, 0.0};
   const double relaxation = 0.0155 * n * n / nu;
   const auto start = static_cast<long>(30.0 * relaxation);
   const auto steps = static_cast<long>(std::ceil(4.0 / u0));  // the passage of four cells
@@ -149,7 +150,7 @@ double step_seconds(const Row& row, bool solids) {
   Row bare = row;
   if (!solids) bare.scheme.clear(), bare.term = "none";
   Fluid fluid = make(bare, domain, 0.6, {0.0, 0.0});
-  std::vector<Disc> discs;
+  std::vector<Body> discs;
   for (int i = 0; i < 49; ++i)
     discs.push_back({i + 1, {14.0 + 28.0 * (i % 7), 14.0 + 28.0 * (i / 7)}, 5.0, {0.01, 0.0}, 0.0});
   double best = 1e9;
@@ -160,7 +161,7 @@ double step_seconds(const Row& row, bool solids) {
       if (solids) fluid.place(discs);
       fluid.step();
       if (solids && fluid.loads().empty()) return 0.0;
-      for (Disc& d : discs) d.centre += d.velocity;
+      for (Body& d : discs) d.centre += d.velocity;
     }
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     best = std::min(best, spent.count() / steps);
@@ -225,12 +226,12 @@ int main(int argc, char** argv) {
 
   const std::vector<double> taus{0.505, 0.6, 1.0, 1.5};
   if (quick) sizes = {10, 20};
-  const std::vector<Vec2> offsets{{0.0, 0.0}, {0.5, 0.5}, {0.23, 0.41}};
+  const std::vector<Vec3> offsets{{0.0, 0.0}, {0.5, 0.5}, {0.23, 0.41}};
   struct Job {
     const Row* row;
     int n;
     double tau;
-    Vec2 offset;
+    Vec3 offset;
     double error = 0.0;
   };
   std::vector<Row> rows;
@@ -240,7 +241,7 @@ int main(int argc, char** argv) {
   for (const Row& row : rows)
     for (const int n : sizes)
       for (const double tau : taus)
-        for (const Vec2& offset : offsets) jobs.push_back({&row, n, tau, offset});
+        for (const Vec3& offset : offsets) jobs.push_back({&row, n, tau, offset});
 #pragma omp parallel for schedule(dynamic)
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     Job& j = jobs[i];

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lbm_solver/solver/fluid.h"
+#include "tests/support/openings.h"
 
 namespace {
 
@@ -16,9 +16,9 @@ void run(Fluid& fluid, int steps) {
   for (int s = 0; s < steps; ++s) fluid.step();
 }
 
-std::unique_ptr<Patch> lid(int nx, int ny, double u, const InTime& in_time = {}) {
-  return std::make_unique<VelocityPatch>(side_links(nx, ny, SideName::Top, 0, nx, true),
-                                         Vec2(u, 0.0), false, 0, nx, in_time);
+void add_lid(Fluid& fluid, double u, const InTime& in_time = {}) {
+  test::add_velocity(fluid, Opening::whole(fluid.domain(), SideName::Top), {u, 0.0}, false,
+                     in_time);
 }
 
 TEST(Couette, IsLinearToRoundOffWithEveryOperator) {
@@ -26,7 +26,7 @@ TEST(Couette, IsLinearToRoundOffWithEveryOperator) {
     const int nx = 5, ny = 16;
     Fluid fluid({nx, ny, Side::Periodic, Side::Wall},
                 {collision, "none", false, "none", {.tau = 1.0}});
-    fluid.add(lid(nx, ny, 0.01));
+    add_lid(fluid, 0.01);
     run(fluid, 20000);
     for (int y = 0; y < ny; ++y)
       EXPECT_NEAR(fluid.cell(2, y).u.x(), 0.01 * (y + 0.5) / ny, 1e-12) << collision << ' ' << y;
@@ -71,7 +71,7 @@ double stokes_error(int cells_per_depth) {
   const int nx = 3, ny = 12 * cells_per_depth;
   const double period = 2.0 * pi / w, u = 0.01;
   Fluid fluid({nx, ny, Side::Periodic, Side::Wall}, {"trt", "none", false, "none", {.tau = tau}});
-  fluid.add(lid(nx, ny, u, InTime{0.0, period}));
+  add_lid(fluid, u, InTime{0.0, period});
   const int steps = static_cast<int>(8.0 * period);
   run(fluid, steps);
   double error = 0.0;
@@ -102,7 +102,7 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
     Fluid fluid({nx, ny, Side::Periodic, Side::Wall}, les);
     for (int y = 0; y < ny; ++y)
       for (int x = 0; x < nx; ++x) fluid.set_equilibrium(x, y, 1.0, {rate * (y + 0.5), 0.0});
-    fluid.add(lid(nx, ny, u));
+    add_lid(fluid, u);
     run(fluid, 40000);
     // shear stress in the middle: rho (nu + nu_t) rate = -(1 - 1/(2 tau*)) Σ c_x c_y f^neq
     double stress = 0.0;
@@ -119,11 +119,11 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
 double reflection(bool absorbing) {
   const int nx = 400, ny = 4, width = 12;
   Fluid fluid({nx, ny, Side::Wall, Side::Periodic}, {"trt", "none", false, "none", {.tau = 0.55}});
-  auto links = side_links(nx, ny, SideName::Right, 0, ny, true);
+  const Opening right = Opening::whole(fluid.domain(), SideName::Right);
   if (absorbing)
-    fluid.add(std::make_unique<OutflowPatch>(links, SideName::Right, 0.0, 0.58 / nx));
+    test::add_outflow(fluid, right, 0.0, 0.58 / nx);
   else
-    fluid.add(std::make_unique<PressurePatch>(links, SideName::Right, 0.0, InTime{}));
+    test::add_pressure(fluid, right, 0.0);
   for (int x = 0; x < nx; ++x)
     for (int y = 0; y < ny; ++y) {
       const double p = 1e-4 * std::exp(-std::pow((x - 250.0) / width, 2));
@@ -144,8 +144,8 @@ TEST(ImpulsivePressure, WithARampOvershootsLittle) {
   const int nx = 120, ny = 5;
   const double drho = 0.01, sound = nx * std::sqrt(3.0);
   Fluid fluid({nx, ny, Side::Wall, Side::Periodic}, {"trt", "none", false, "none", {.tau = 0.6}});
-  fluid.add(std::make_unique<PressurePatch>(side_links(nx, ny, SideName::Left, 0, ny, true),
-                                            SideName::Left, drho, InTime{6.0 * sound, 0.0}));
+  test::add_pressure(fluid, Opening::whole(fluid.domain(), SideName::Left), drho,
+                     {6.0 * sound, 0.0});
   double largest = 0.0;
   for (int step = 0; step < 20 * sound; ++step) {
     fluid.step();

@@ -25,7 +25,7 @@ double viscosity(double tau) {
 double taylor_green_error(const std::string& collision, int n) {
   const double tau = 0.8, nu = viscosity(tau), k = 2.0 * pi / n, u0 = 0.64 / n;
   Fluid fluid({n, n, Side::Periodic, Side::Periodic}, choice(collision, tau));
-  const auto exact = [&](int x, int y, double t) -> Vec2 {
+  const auto exact = [&](int x, int y, double t) -> Vec3 {
     const double d = u0 * std::exp(-2.0 * nu * k * k * t), a = k * (x + 0.5), b = k * (y + 0.5);
     return {d * std::cos(a) * std::sin(b), -d * std::sin(a) * std::cos(b)};
   };
@@ -71,7 +71,7 @@ double shear_decay_error(int h, double tau, bool across_x) {
     for (int j = 0; j < length; ++j) {
       const double u = u0 * std::sin(k * (i + 0.5));
       const auto [x, y] = at(i, j);
-      fluid.set_equilibrium(x, y, 1.0, across_x ? Vec2(0.0, u) : Vec2(u, 0.0));
+      fluid.set_equilibrium(x, y, 1.0, across_x ? Vec3(0.0, u) : Vec3(u, 0.0));
     }
   const int steps = static_cast<int>(std::lround(1.0 / (nu * k * k)));
   for (int s = 0; s < steps; ++s) fluid.step();
@@ -80,7 +80,7 @@ double shear_decay_error(int h, double tau, bool across_x) {
   for (int i = 0; i < h; ++i)
     for (int j = 0; j < length; ++j) {
       const auto [x, y] = at(i, j);
-      const Vec2 u = fluid.cell(x, y).u;
+      const Vec3 u = fluid.cell(x, y).u;
       const double along = across_x ? u.y() : u.x(), across = across_x ? u.x() : u.y();
       error =
           std::max(error, std::abs(along - u0 * decay * std::sin(k * (i + 0.5))) / (u0 * decay));
@@ -129,8 +129,8 @@ TEST(Extremes, FindsThePlaceOfAValueThatIsNotFinite) {
   fluid.arriving(3, 17, 9) = std::nan("");
   const auto e = fluid.extremes();
   EXPECT_FALSE(e.finite);
-  EXPECT_EQ(e.x, 17);
-  EXPECT_EQ(e.y, 9);
+  EXPECT_EQ(e.cell[0], 17);
+  EXPECT_EQ(e.cell[1], 9);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "lbm_solver/coupling/particles.h"
+#include "tests/support/openings.h"
 #include "tests/support/scheme_fluid.h"
 
 namespace {
@@ -31,7 +32,7 @@ Released release(double ratio, double viscosity, double seconds, double early,
   scene.particles.emplace();
   Fluid fluid = make({"", "layered_holdych"}, {80, 160, Side::Wall, Side::Wall}, "trt",
                      0.5 + 3.0 * viscosity * dt / (dx * dx));
-  Particles particles(units, scene);
+  Particles particles(units, scene, fluid.domain());
   const double mass = ratio * 1000.0 * std::numbers::pi * radius * radius;
   protocol::Particle p{{1, {0.01, 0.02, 0.0}, {}, {}},
                        {1, radius, mass, 0.5 * mass * radius * radius, 1}};
@@ -40,7 +41,7 @@ Released release(double ratio, double viscosity, double seconds, double early,
   const int steps = static_cast<int>(seconds / dt), early_steps = static_cast<int>(early / dt);
   for (int s = 1; s <= steps; ++s) {
     particles.arrive(std::vector{p}, dt);
-    fluid.place(particles.discs(0.0));
+    fluid.place(particles.bodies(0.0));
     fluid.step();
     particles.add(fluid.loads());
     const auto load = particles.mean_loads(1)[0];
@@ -87,18 +88,18 @@ TEST(LightParticles, VirtualMassDoesNotChangeTheMotion) {
 /// A free disc in lattice units (cells, steps, density of the fluid 1), coupled as the programs
 /// are.
 struct FreeRun {
-  std::vector<Vec2> place, velocity;
+  std::vector<Vec3> place, velocity;
   std::vector<double> force_y;
 };
 FreeRun free_run(const Domain& domain, const Case& c, const std::string& collision, double tau,
-                 double ratio, double radius, const Vec2& start, const Vec2& gravity, int steps,
+                 double ratio, double radius, const Vec3& start, const Vec3& gravity, int steps,
                  int fluid_steps = 1) {
   Scene scene;
   scene.fluid = {.density = 1.0, .viscosity = (tau - 0.5) / 3.0, .gravity = gravity};
   scene.coupling.emplace();
   scene.particles.emplace();
   Fluid fluid = make(c, domain, collision, tau);
-  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene);
+  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene, fluid.domain());
   const double mass = ratio * std::numbers::pi * radius * radius, interval = fluid_steps;
   protocol::Particle p{{1, {start.x(), start.y(), 0.0}, {}, {}},
                        {1, radius, mass, 0.5 * mass * radius * radius, 1}};
@@ -106,7 +107,7 @@ FreeRun free_run(const Domain& domain, const Case& c, const std::string& collisi
   for (int s = 0; s < steps; s += fluid_steps) {
     particles.arrive(std::vector{p}, interval);
     for (int k = 0; k < fluid_steps; ++k) {
-      fluid.place(particles.discs(k));
+      fluid.place(particles.bodies(k));
       fluid.step();
       particles.add(fluid.loads());
     }
@@ -126,13 +127,13 @@ FreeRun free_run(const Domain& domain, const Case& c, const std::string& collisi
 
 TEST(PeriodicCrossing, OfFacesAndCornersChangesNoTrajectory) {
   const Domain domain{48, 40, Side::Periodic, Side::Periodic};
-  const Vec2 inside(20.0 + 77.0 / 1024, 19.0 + 301.0 / 1024), gravity(2e-5, -1e-5);
-  const auto from = [&](const Vec2& start) {
+  const Vec3 inside(20.0 + 77.0 / 1024, 19.0 + 301.0 / 1024), gravity(2e-5, -1e-5);
+  const auto from = [&](const Vec3& start) {
     return free_run(domain, {"", "layered_holdych"}, "trt", 0.7, 2.5, 5.25, start, gravity, 1000);
   };
   const FreeRun reference = from(inside);
   EXPECT_GT((reference.place.back() - inside).norm(), 2.0);  // it goes somewhere
-  for (const Vec2& shift : {Vec2(24.0, 0.0), Vec2(0.0, 20.0), Vec2(25.0, 18.0)}) {
+  for (const Vec3& shift : {Vec3(24.0, 0.0), Vec3(0.0, 20.0), Vec3(25.0, 18.0)}) {
     const FreeRun shifted = from(inside + shift);
     EXPECT_LT((shifted.velocity.back() - reference.velocity.back()).norm(), 1e-10);
     EXPECT_LT((shifted.place.back() - shift - reference.place.back()).norm(), 1e-10);
@@ -167,19 +168,18 @@ double viscosity_gain(const Case& c, double tau, double diameter, double fractio
   const double area = std::numbers::pi * radius * radius;
   const int n = static_cast<int>(std::lround(std::sqrt(area / fraction)));
   const Domain domain{n, n, Side::Periodic, Side::Wall};
-  const Vec2 wall(0.5 * shear * n, 0.0);
+  const Vec3 wall(0.5 * shear * n, 0.0);
   Fluid fluid = make(c, domain, "trt", tau);
-  for (const auto& [side, u] : {std::pair{SideName::Top, wall}, {SideName::Bottom, Vec2(-wall)}})
-    fluid.add(std::make_unique<VelocityPatch>(side_links(n, n, side, 0, n, true), u, false, 0, n,
-                                              InTime{}));
+  for (const auto& [side, u] : {std::pair{SideName::Top, wall}, {SideName::Bottom, Vec3(-wall)}})
+    test::add_velocity(fluid, Opening::whole(domain, side), u);
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x)
       fluid.set_equilibrium(x, y, 1.0, {shear * (y + 0.5 - 0.5 * n), 0.0});
-  Disc disc{1, {0.5 * n + 0.23, 0.5 * n}, radius, {0.0, 0.0}, -0.5 * shear};
+  Body disc{1, {0.5 * n + 0.23, 0.5 * n}, radius, Vec3(), -0.5 * shear};
   for (int s = 0; s < n * n / nu; ++s) {  // ten times the slowest decay
     fluid.place(std::vector{disc});
     fluid.step();
-    disc.spin += 0.025 * fluid.loads()[0].torque / area;  // until none is left
+    disc.spin.z() += 0.025 * fluid.loads()[0].torque.z() / area;  // until none is left
   }
   double u = 0.0;
   for (int x = 0; x < n; ++x) u += fluid.cell(x, n - 4).u.x() / n;

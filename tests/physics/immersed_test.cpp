@@ -15,21 +15,21 @@ using namespace lbm;
 
 const std::vector<std::string> kTerms{"noble_torczynski", "holdych", "layered_holdych"};
 
-Vec2 momentum(const Fluid& fluid) {
+Vec3 momentum(const Fluid& fluid) {
   const Domain& d = fluid.domain();
-  Vec2 sum(0.0, 0.0);
+  Vec3 sum(0.0, 0.0);
   for (int y = 0; y < d.ny; ++y)
     for (int x = 0; x < d.nx; ++x)
       for (int q = 1; q < D2Q9::Q; ++q)
-        sum += fluid.arriving(q, x, y) * Vec2(D2Q9::c[q][0], D2Q9::c[q][1]);
+        sum += fluid.arriving(q, x, y) * Vec3(D2Q9::c[q][0], D2Q9::c[q][1]);
   return sum;
 }
 
 /// Momentum that the walls gave to the fluid in the last step: a population that came back from a
 /// wall arrived as c_q and had left as -c_q.
-Vec2 wall_impulse(const Fluid& fluid) {
+Vec3 wall_impulse(const Fluid& fluid) {
   const Domain& d = fluid.domain();
-  Vec2 sum(0.0, 0.0);
+  Vec3 sum(0.0, 0.0);
   for (int y = 0; y < d.ny; ++y)
     for (int x = 0; x < d.nx; ++x)
       for (int q = 1; q < D2Q9::Q; ++q) {
@@ -37,7 +37,7 @@ Vec2 wall_impulse(const Fluid& fluid) {
         const bool beyond_x = d.x == Side::Wall && (from_x < 0 || from_x >= d.nx);
         const bool beyond_y = d.y == Side::Wall && (from_y < 0 || from_y >= d.ny);
         if (beyond_x || beyond_y)
-          sum += 2.0 * fluid.arriving(q, x, y) * Vec2(D2Q9::c[q][0], D2Q9::c[q][1]);
+          sum += 2.0 * fluid.arriving(q, x, y) * Vec3(D2Q9::c[q][0], D2Q9::c[q][1]);
       }
   return sum;
 }
@@ -47,20 +47,20 @@ TEST(Momentum, FluidPlusDiscsMinusWallsIsConstant) {
     for (const Side side : {Side::Wall, Side::Periodic}) {
       const Domain domain{50, 44, side, Side::Wall};
       Fluid fluid(domain, {"trt", "none", false, term, {.tau = 0.7}});
-      std::vector<Disc> discs{{1, {20.2, 30.1}, 6.0, {0.03, -0.04}, 0.002},
+      std::vector<Body> discs{{1, {20.2, 30.1}, 6.0, {0.03, -0.04}, 0.002},
                               {2, {29.0, 25.0}, 4.0, {-0.02, 0.01}, -0.001},
                               {3, {1.0, 3.0}, 5.0, {0.0, 0.02}, 0.0}};
       for (int step = 0; step < 60; ++step) {
         fluid.place(discs);
-        const Vec2 before = momentum(fluid);
+        const Vec3 before = momentum(fluid);
         fluid.step();
-        Vec2 on_discs(0.0, 0.0);
+        Vec3 on_discs(0.0, 0.0);
         for (const auto& load : fluid.loads()) on_discs += load.force;
-        const Vec2 residual = momentum(fluid) - before + on_discs - wall_impulse(fluid);
+        const Vec3 residual = momentum(fluid) - before + on_discs - wall_impulse(fluid);
         // 2200 cells times nine populations of 1e-3 … 1e-2: round-off of the sums, relative to the
         // force
         EXPECT_LT(residual.norm(), 1e-12 * std::max(1.0, on_discs.norm())) << term << ' ' << step;
-        for (Disc& d : discs) d.centre += d.velocity;
+        for (Body& d : discs) d.centre += d.velocity;
       }
     }
 }
@@ -69,8 +69,8 @@ TEST(Symmetry, AMirroredSceneGivesMirroredLoads) {
   const Domain domain{48, 40, Side::Wall, Side::Wall};
   const auto run = [&](double sign) {
     Fluid fluid(domain, {"trt", "none", false, "layered_holdych", {.tau = 0.8}});
-    Disc disc{1, {24.0 + sign * 5.25, 18.5}, 5.5, {sign * 0.03, -0.02}, sign * 0.004};
-    DiscLoad load;
+    Body disc{1, {24.0 + sign * 5.25, 18.5}, 5.5, {sign * 0.03, -0.02}, sign * 0.004};
+    BodyLoad load;
     for (int s = 0; s < 40; ++s) {
       fluid.place(std::vector{disc});
       fluid.step();
@@ -79,12 +79,12 @@ TEST(Symmetry, AMirroredSceneGivesMirroredLoads) {
     }
     return load;
   };
-  const DiscLoad right = run(1.0), left = run(-1.0);
+  const BodyLoad right = run(1.0), left = run(-1.0);
   EXPECT_NEAR(right.force.x(), -left.force.x(), 1e-12);
   EXPECT_NEAR(right.force.y(), left.force.y(), 1e-12);
-  EXPECT_NEAR(right.torque, -left.torque, 1e-11);
-  EXPECT_LT(right.force.x(), -1e-3);  // drag opposes the motion
-  EXPECT_LT(right.torque, -1e-3);     // and the rotation
+  EXPECT_NEAR(right.torque.z(), -left.torque.z(), 1e-11);
+  EXPECT_LT(right.force.x(), -1e-3);   // drag opposes the motion
+  EXPECT_LT(right.torque.z(), -1e-3);  // and the rotation
 }
 
 /// A rigid disc as a solid program integrates it: velocity Verlet with the load of the interval.
@@ -118,7 +118,7 @@ FreeDisc settle(double density_ratio, int steps, bool inner_inertia) {
   scene.fluid = fluid_scene;
   scene.coupling = coupling;
   scene.particles.emplace();
-  Particles particles(units, scene);
+  Particles particles(units, scene, fluid.domain());
   const double mass = density_ratio * 1000.0 * std::numbers::pi * radius * radius;
   FreeDisc disc{
       {{1, {0.01, 0.03, 0.0}, {}, {}}, {1, radius, mass, 0.5 * mass * radius * radius, 1}},
@@ -126,7 +126,7 @@ FreeDisc settle(double density_ratio, int steps, bool inner_inertia) {
       units.dt};
   for (int s = 0; s < steps; ++s) {
     particles.arrive(std::vector{disc.p}, units.dt);
-    fluid.place(particles.discs(0.0));
+    fluid.place(particles.bodies(0.0));
     fluid.step();
     particles.add(fluid.loads());
     disc.advance(particles.mean_loads(1)[0]);

@@ -28,9 +28,9 @@ double array_error(const Case& c, int n, double tau) {
   const double nu = (tau - 0.5) / 3.0, r = n * std::sqrt(0.2 / std::numbers::pi);
   const double u = 0.01 * nu / (2.0 * r), drag = 51.526949, g = drag * nu * u / (n * n);
   Fluid fluid = make(c, {n, n, Side::Periodic, Side::Periodic}, "trt", tau, {g, 0.0});
-  const Disc disc{1, {0.5 * n + 0.23, 0.5 * n + 0.41}, r, {0.0, 0.0}, 0.0};
+  const Body disc{1, {0.5 * n + 0.23, 0.5 * n + 0.41}, r, {0.0, 0.0}, 0.0};
   const auto steps = static_cast<int>(0.3 * n * n / nu);  // twenty times the slowest decay
-  Vec2 before(0.0, 0.0);
+  Vec3 before(0.0, 0.0);
   for (int s = 0; s < steps; ++s) {
     fluid.place(std::vector{disc});
     if (s > 0) before = fluid.loads()[0].force;
@@ -65,25 +65,25 @@ TEST(ArrayDrag, OfTheOtherSchemesIsWhatTheReportSays) {
   EXPECT_NEAR(array_error({"implicit_immersed_boundary", "none"}, 20, 0.8), 0.423, 0.01);
 }
 
-Vec2 momentum(const Fluid& fluid, const std::vector<Disc>& without = {}) {
+Vec3 momentum(const Fluid& fluid, const std::vector<Body>& without = {}) {
   const Domain& d = fluid.domain();
-  Vec2 sum(0.0, 0.0);
+  Vec3 sum(0.0, 0.0);
   for (int y = 0; y < d.ny; ++y)
     for (int x = 0; x < d.nx; ++x) {
       bool solid = false;
-      for (const Disc& disc : without) {
-        Vec2 arm = Vec2(x + 0.5, y + 0.5) - disc.centre;
+      for (const Body& disc : without) {
+        Vec3 arm = Vec3(x + 0.5, y + 0.5) - disc.centre;
         arm.x() -= d.nx * std::round(arm.x() / d.nx);
         arm.y() -= d.ny * std::round(arm.y() / d.ny);
         solid = solid || arm.norm() < disc.radius;
       }
       for (int q = 1; q < D2Q9::Q && !solid; ++q)
-        sum += fluid.arriving(q, x, y) * Vec2(D2Q9::c[q][0], D2Q9::c[q][1]);
+        sum += fluid.arriving(q, x, y) * Vec3(D2Q9::c[q][0], D2Q9::c[q][1]);
     }
   return sum;
 }
 
-std::vector<Disc> pair_of_discs() {
+std::vector<Body> pair_of_discs() {
   return {{1, {3.2, 21.1}, 6.0, {0.02, -0.03}, 0.002}, {2, {15.0, 20.0}, 5.0, {-0.01, 0.01}, 0.0}};
 }
 
@@ -92,25 +92,25 @@ TEST(Momentum, WhatTheFluidLosesTheBodiesGet) {
     const bool links = c.scheme.find("bounce_back") != std::string::npos;
     Fluid fluid = make(c, {48, 44, Side::Periodic, Side::Periodic}, "trt", 0.7);
     auto discs = pair_of_discs();
-    std::vector<Disc> before_discs;  // of the step before: link schemes count fluid cells only
+    std::vector<Body> before_discs;  // of the step before: link schemes count fluid cells only
     for (int step = 0; step < 40; ++step) {
-      const Vec2 before = momentum(fluid, links ? before_discs : std::vector<Disc>{});
+      const Vec3 before = momentum(fluid, links ? before_discs : std::vector<Body>{});
       fluid.place(discs);
       fluid.step();
-      Vec2 on_discs(0.0, 0.0);
+      Vec3 on_discs(0.0, 0.0);
       for (const auto& load : fluid.loads()) on_discs += load.force;
-      const Vec2 after = momentum(fluid, links ? discs : std::vector<Disc>{});
+      const Vec3 after = momentum(fluid, links ? discs : std::vector<Body>{});
       EXPECT_LT((after - before + on_discs).norm(), 1e-12 * std::max(1.0, on_discs.norm()))
           << c.name() << ' ' << step;
       before_discs = discs;
-      for (Disc& d : discs) d.centre += d.velocity;
+      for (Body& d : discs) d.centre += d.velocity;
     }
   }
 }
 
 TEST(Order, OfTheBodiesPlaysNoPart) {
   for (const Case& c : kAll) {
-    std::vector<std::vector<DiscLoad>> results;
+    std::vector<std::vector<BodyLoad>> results;
     for (const bool reversed : {false, true}) {
       Fluid fluid = make(c, {48, 44, Side::Periodic, Side::Wall}, "trt", 0.7);
       auto discs = pair_of_discs();
@@ -120,12 +120,12 @@ TEST(Order, OfTheBodiesPlaysNoPart) {
       for (int step = 0; step < 20; ++step) {
         fluid.place(discs);
         fluid.step();
-        for (Disc& d : discs) d.centre += d.velocity;
+        for (Body& d : discs) d.centre += d.velocity;
       }
       results.push_back(fluid.loads());
     }
     EXPECT_NEAR((results[0][0].force - results[1][1].force).norm(), 0.0, 1e-12) << c.name();
-    EXPECT_NEAR(results[0][1].torque, results[1][0].torque, 1e-11) << c.name();
+    EXPECT_NEAR(results[0][1].torque.z(), results[1][0].torque.z(), 1e-11) << c.name();
   }
 }
 
@@ -139,7 +139,7 @@ TEST(AddedMass, OfAnOscillatingDisc) {
   Fluid fluid =
       make({"", "layered_holdych"}, {n, n, Side::Periodic, Side::Periodic}, "trt", 0.5 + 3.0 * nu);
   double in_phase = 0.0;
-  Disc disc{1, {0.5 * n, 0.5 * n + 0.3}, 0.5 * d, {0.0, 0.0}, 0.0};
+  Body disc{1, {0.5 * n, 0.5 * n + 0.3}, 0.5 * d, {0.0, 0.0}, 0.0};
   for (int s = 0; s < 2 * period; ++s) {
     const double before = disc.velocity.x();
     disc.centre.x() = 0.5 * n + 0.2 + amplitude * std::sin(omega * s);
@@ -164,7 +164,7 @@ TEST(Galilean, DragInAMovingFrame) {
     Fluid fluid = make({"", term}, {n, n, Side::Periodic, Side::Periodic}, collision, tau, {g, 0});
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) fluid.set_equilibrium(x, y, 1.0, {carried, 0.0});
-    Disc disc{1, {0.5 * n, 0.5 * n + 0.23}, r, {carried, 0.0}, 0.0};
+    Body disc{1, {0.5 * n, 0.5 * n + 0.23}, r, {carried, 0.0}, 0.0};
     double relative = 0.0;
     const int steps = 6000, last = 2000;  // the passage of whole cells
     for (int s = 0; s < steps; ++s) {
@@ -189,7 +189,7 @@ TEST(Galilean, DragInAMovingFrame) {
 TEST(SpringScheme, RemembersItsStretchInACheckpoint) {
   const Case c{"spring_immersed_boundary", "none"};
   const Domain domain{40, 36, Side::Periodic, Side::Wall};
-  const std::vector<Disc> discs{{1, {20.0, 18.0}, 5.0, {0.0, 0.0}, 0.0}};
+  const std::vector<Body> discs{{1, {20.0, 18.0}, 5.0, {0.0, 0.0}, 0.0}};
   const auto run = [&](Fluid& fluid, int steps) {
     for (int s = 0; s < steps; ++s) {
       fluid.place(discs);

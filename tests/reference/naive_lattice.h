@@ -12,47 +12,64 @@
 namespace test {
 
 using lbm::Domain;
-using lbm::Vec2;
+using lbm::Vec3;
 
 /// What covers a cell.
 struct NaiveCover {
   double weight = 0.0;  ///< B, with a turbulence model the solid fraction; 0: pure fluid
   bool whole = false;   ///< covered whole
   bool core = false;    ///< deep inside
-  Vec2 velocity{0.0, 0.0};
+  Vec3 velocity;
 };
 
 class NaiveLattice {
  public:
-  using Cell = std::array<double, 9>;
+  using Cell = std::array<double, 27>;  // of which a lattice uses its Q
 
   NaiveLattice(const Domain& domain, const lbm::KernelChoice& choice);
 
-  Cell& cell(int x, int y) { return f_[y * domain_.nx + x]; }
-  NaiveCover& cover(int x, int y) { return cover_[y * domain_.nx + x]; }
+  const lbm::Lattice& lattice() const { return l_; }
+  Cell& cell(int x, int y, int z = 0) { return f_[index(x, y, z)]; }
+  NaiveCover& cover(int x, int y, int z = 0) { return cover_[index(x, y, z)]; }
   /// Force on the solids in a cell over the last step: B G - B Σ c_i Ω_i^s, the full sum.
-  Vec2 force(int x, int y) const { return force_[y * domain_.nx + x]; }
+  Vec3 force(int x, int y, int z = 0) const { return force_[index(x, y, z)]; }
 
   /// Collides every cell, then moves populations one cell on or bounces them back half-way.
   void step();
 
+  /// Second-order equilibrium of all directions (not shifted).
+  Cell equilibrium(double rho, const Vec3& u) const;
+
  private:
-  Cell collided(int x, int y);
+  struct Macroscopic {
+    double rho = 0.0;
+    Vec3 j;
+  };
+  std::size_t index(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * domain_.ny + y) * domain_.nx + x;
+  }
+  Vec3 c(int i) const;
+  Macroscopic macroscopic(const Cell& f) const;
+  Vec3 body_force() const;
+  Cell source(const Vec3& u) const;
+  Eigen::Matrix3d stress(const Cell& f, const Cell& eq, const Vec3& u) const;
+  Cell central_moments(const Cell& f, double rho, const Vec3& u, double omega) const;
+  Cell recursive_regularised(double rho, const Vec3& u, const Eigen::Matrix3d& q, const Cell& force,
+                             double omega) const;
+  Cell collided(std::size_t cell);
   /// Post-collision populations of pure fluid.
   Cell fluid(const Cell& f) const;
   /// Relaxation time with the eddy viscosity.
   double tau(const Cell& f) const;
   Cell solid_term(const Cell& f, const Cell& eq_fluid, double rho, const NaiveCover& c) const;
-  void stream(int x, int y, const Cell& f, std::vector<Cell>& next) const;
 
   Domain domain_;
   lbm::KernelChoice choice_;
+  const lbm::Lattice& l_;
+  std::vector<std::array<int, 3>> powers_;  // of the moments that the lattice has
   std::vector<Cell> f_;
   std::vector<NaiveCover> cover_;
-  std::vector<Vec2> force_;
+  std::vector<Vec3> force_;
 };
-
-/// Second-order equilibrium of all directions (not shifted).
-NaiveLattice::Cell naive_equilibrium(double rho, const Vec2& u);
 
 }  // namespace test

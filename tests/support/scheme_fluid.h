@@ -17,13 +17,13 @@ struct Case {
 };
 
 inline Fluid make(const Case& c, const Domain& domain, const std::string& collision, double tau,
-                  const Vec2& force = {0.0, 0.0}) {
+                  const Vec3& force = Vec3()) {
   Fluid fluid(domain, {collision,
                        "none",
                        force.norm() > 0.0,
                        c.term,
                        {.tau = tau, .force_x = force.x(), .force_y = force.y()}});
-  if (!c.scheme.empty()) fluid.use(make_scheme(c.scheme, domain, {0.5 * force}));
+  if (!c.scheme.empty()) fluid.use(make_scheme(c.scheme, domain, fluid.lattice(), {0.5 * force}));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;

@@ -14,6 +14,8 @@ plt.rcParams.update({
     "axes.grid": True, "grid.alpha": 0.25, "legend.frameon": False, "lines.linewidth": 1.4,
 })
 
+UNITS = {1.0: "m", 1e-2: "cm", 1e-3: "mm"}
+
 
 def read_table(path):
     """Columns of a CSV file of ours: dict name -> array."""
@@ -97,6 +99,35 @@ def draw_speed(axes, run, name, vmax, length_unit=1e-2):
     return image
 
 
+def draw_slice(axes, run, name, normal, at=None, vmax=None, length_unit=1e-2, quantity=None):
+    """Colour map of the fluid's speed on a plane through a box in three dimensions, and the particles that it cuts.
+
+    normal: x, y or z; at: where along it [m], the middle by default; quantity: [nz][ny][nx] instead of
+    the speed. Returns the image.
+    """
+    frame, p = run.frame(name), run.parameters
+    axis = "xyz".index(normal)
+    across, up = [a for a in range(3) if a != axis]
+    size = [p["box_x"], p["box_y"], p["box_z"]]
+    at = 0.5 * size[axis] if at is None else at
+    values = np.linalg.norm(frame["velocity"], axis=-1) if quantity is None else quantity
+    cells = values.shape[2 - axis]
+    layer = np.take(values, min(cells - 1, int(at / size[axis] * cells)), axis=2 - axis)  # [up][across]
+    extent = [0, size[across] / length_unit, 0, size[up] / length_unit]
+    image = axes.imshow(layer, origin="lower", extent=extent, cmap="magma", vmin=0, vmax=vmax)
+    particles = frame["particles"]
+    depth = particles[:, 1 + axis] - at
+    cut = np.abs(depth) < particles[:, 4]
+    discs = [plt.Circle((q[1 + across] / length_unit, q[1 + up] / length_unit),
+                        np.sqrt(q[4] ** 2 - d ** 2) / length_unit)
+             for q, d in zip(particles[cut], depth[cut])]
+    axes.add_collection(PatchCollection(discs, facecolor="white", edgecolor="black", linewidth=0.8))
+    axes.set_xlabel(f"{'xyz'[across]} [{UNITS[length_unit]}]")
+    axes.set_ylabel(f"{'xyz'[up]} [{UNITS[length_unit]}]")
+    axes.grid(False)
+    return image
+
+
 def draw_bonds(axes, frame, length_unit=1e-2):
     """Lines between bonded discs: intact green, broken by tension red, by shear blue."""
     if "bond_state" not in frame:
@@ -124,7 +155,7 @@ def animate(run, name, draw, size, seconds=5.0):
 
 def draw_snapshots(run, times, vmax, length_unit=1e-2, width=1.45):
     """A row of pictures of the fluid's speed at the frames nearest to the times [s], as field.png."""
-    unit = {1e-2: "cm", 1e-3: "mm"}[length_unit]
+    unit = UNITS[length_unit]
     frames = run.frames()
     chosen = [min(frames, key=lambda f: abs(f[0] - t)) for t in times if t <= 1.05 * frames[-1][0]]
     figure, axes = plt.subplots(1, len(chosen), figsize=(width * len(chosen) + 0.8, 4.2), sharey=True,

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "lbm_solver/solver/fluid.h"
+#include "tests/support/openings.h"
 
 namespace {
 
@@ -17,19 +17,26 @@ KernelChoice kernel(const std::string& collision, const std::string& solid_term 
 TEST(SideLinks, ASlotKeepsItsEdgesNoSlip) {
   // cells 3 … 6 of the left side: each has one straight link, and diagonals except those across the
   // ends
-  const auto links = side_links(20, 10, SideName::Left, 3, 7, false);
+  const Domain domain{20, 10, Side::Wall, Side::Wall};
+  const auto links =
+      side_links(lattice("D2Q9"), domain, Block::whole(domain), test::part(SideName::Left, 3, 7));
   EXPECT_EQ(links.size(), 4U + 2 * 3);
   for (const Link& l : links) {
-    EXPECT_EQ(l.x, 0);
+    EXPECT_EQ(l.cell[0], 0);
     EXPECT_EQ(D2Q9::c[l.q][0], 1);
-    EXPECT_GT(l.at, 3.0);
-    EXPECT_LT(l.at, 7.0);
+    EXPECT_GT(l.at[0], 3.0);
+    EXPECT_LT(l.at[0], 7.0);
   }
 }
 
 TEST(SideLinks, CornersOfTheBoxBelongToTheWalls) {
-  EXPECT_EQ(side_links(20, 10, SideName::Top, 0, 20, false).size(), 20U + 2 * 19);
-  EXPECT_EQ(side_links(20, 10, SideName::Top, 0, 20, true).size(), 3U * 20);  // periodic neighbours
+  const auto links = [](Side across) {
+    const Domain domain{20, 10, across, Side::Wall};
+    return side_links(lattice("D2Q9"), domain, Block::whole(domain),
+                      Opening::whole(domain, SideName::Top));
+  };
+  EXPECT_EQ(links(Side::Wall).size(), 20U + 2 * 19);
+  EXPECT_EQ(links(Side::Periodic).size(), 3U * 20);
 }
 
 /// Sum of rho - 1 over the lattice.
@@ -39,23 +46,18 @@ double mass(Fluid& fluid) {
 
 TEST(Ledger, MassOfAnOpenBoxIsAccountedForToRoundOff) {
   Fluid fluid({40, 24, Side::Wall, Side::Wall}, kernel("trt"));
-  fluid.add(std::make_unique<VelocityPatch>(side_links(40, 24, SideName::Left, 4, 20, false),
-                                            Vec2(0.05, 0.0), true, 4, 20, InTime{50.0, 0.0}));
-  fluid.add(std::make_unique<PressurePatch>(side_links(40, 24, SideName::Right, 0, 12, false),
-                                            SideName::Right, 0.002, InTime{}));
-  fluid.add(std::make_unique<OutflowPatch>(side_links(40, 24, SideName::Right, 12, 24, false),
-                                           SideName::Right, 0.0, 0.01));
+  test::add_velocity(fluid, test::part(SideName::Left, 4, 20), {0.05, 0.0}, true, {50.0, 0.0});
+  test::add_pressure(fluid, test::part(SideName::Right, 0, 12), 0.002);
+  test::add_outflow(fluid, test::part(SideName::Right, 12, 24), 0.0, 0.01);
   for (int step = 0; step < 2000; ++step) fluid.step();
-  double entered = 0.0;
-  for (const auto& patch : fluid.patches()) entered += patch->mass_in();
-  EXPECT_NEAR(mass(fluid), entered, 1e-12 * 40 * 24);
+  EXPECT_NEAR(mass(fluid), fluid.mass_in(), 1e-12 * 40 * 24);
   EXPECT_GT(std::abs(fluid.patches()[0]->mass_in()), 10.0);  // a good deal went through
 }
 
 TEST(Ledger, APressureJumpMakesNoMass) {
   Fluid fluid({24, 16, Side::Periodic, Side::Wall}, kernel("trt"));
   for (const SideName side : {SideName::Left, SideName::Right})
-    fluid.add(std::make_unique<PressureJumpPatch>(side_links(24, 16, side, 0, 16, false), side,
+    fluid.add(std::make_unique<PressureJumpPatch>(fluid.links(test::part(side, 0, 16)), side,
                                                   side == SideName::Left ? 1e-3 : -1e-3, InTime{}));
   for (int step = 0; step < 3000; ++step) fluid.step();
   // the even terms of both sides are those of slightly different velocities: 4.5 (c·u)² of 1e-3 of
@@ -99,13 +101,16 @@ TEST_P(SymmetryTest, ATurnedOrMirroredStateGivesTheTurnedResult) {
                 f(a.arriving(q, x, y), b.arriving(to.q, to.x, to.y));
               }
         };
-        each([&](double& p, double& q) { p = q = noise(random); });
+        each([&](const Population& p, const Population& q) {
+          p = noise(random);
+          q = p;
+        });
         for (int step = 0; step < 20; ++step) {
           a.step();
           b.step();
         }
         double largest = 0.0;
-        each([&](double& p, double& q) { largest = std::max(largest, std::abs(p - q)); });
+        each([&](double p, double q) { largest = std::max(largest, std::abs(p - q)); });
         // deviations of 1e-3 have a round-off of 1e-19; central moments rebuild whole populations,
         // up to 4/9, in sums of some ten terms
         EXPECT_LT(largest, GetParam() == "central_moment" ? 1e-15 : 1e-17);
@@ -120,7 +125,7 @@ TEST(Blocks, AreWallsHalfWayBetweenTheCells) {
   with.solid_term = "layered_holdych";
   Fluid small({nx, ny, Side::Periodic, Side::Wall}, plain);
   Fluid large({nx, ny + 2, Side::Periodic, Side::Wall}, with);
-  large.add_wall(0, 0, nx, 2);
+  large.add_wall({0, 0, 0}, {nx, 2, 1});
   large.place({});
   for (int step = 0; step < 6000; ++step) {
     small.step();

@@ -16,9 +16,9 @@ TEST(BoundaryTrace, FindsTheCellsOnEitherSideOfTheSurface) {
   std::uniform_real_distribution<double> place(30.0, 31.0);
   for (const double radius : {2.5, 5.0, 12.5})
     for (int trial = 0; trial < 200; ++trial) {
-      const Vec2 centre(place(random), place(random));
+      const Vec3 centre(place(random), place(random));
       const auto inside = [&](int x, int y) {
-        return (Vec2(x + 0.5, y + 0.5) - centre).squaredNorm() < radius * radius;
+        return (Vec3(x + 0.5, y + 0.5) - centre).squaredNorm() < radius * radius;
       };
       Cells solid, fluid;
       for (int y = 10; y < 50; ++y)

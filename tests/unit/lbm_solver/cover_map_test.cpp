@@ -15,14 +15,14 @@ using namespace lbm;
 const Domain kDomain{48, 40, Side::Wall, Side::Periodic};
 
 /// Three discs that overlap pairwise, so that cells hold two and three of them.
-std::vector<Disc> cluster() {
+std::vector<Body> cluster() {
   return {{1, {20.3, 20.1}, 5.0, {0.01, 0.0}, 0.001},
           {2, {27.9, 20.6}, 4.0, {-0.02, 0.01}, 0.0},
           {3, {24.4, 26.0}, 3.7, {0.0, -0.02}, -0.002}};
 }
 
 /// A fluid that moves, with the discs in it, after some steps.
-Fluid stirred(std::vector<Disc> discs) {
+Fluid stirred(std::vector<Body> discs) {
   Fluid fluid(kDomain, {"trt", "none", false, "layered_holdych", {.tau = 0.8}});
   for (int y = 0; y < kDomain.ny; ++y)
     for (int x = 0; x < kDomain.nx; ++x)
@@ -46,13 +46,13 @@ TEST(ImmersedWeight, HasItsLimits) {
 
 TEST(CoverMap, LoadsOfSharedCellsAddUpToTheWholeForce) {
   const Fluid fluid = stirred(cluster());
-  Vec2 whole(0.0, 0.0), shared(0.0, 0.0);
+  Vec3 whole(0.0, 0.0), shared(0.0, 0.0);
   for (int y = 0; y < kDomain.ny; ++y)
     for (int b = 0; b < fluid.cover()->blocks_per_row(); ++b)
-      if (const auto* block = fluid.cover()->block(y, b))
+      if (const auto* block = fluid.cover()->block<2>(y, 0, b))
         for (int lane = 0; lane < kPackWidth; ++lane)
-          whole += Vec2(block->fx[lane], block->fy[lane]);
-  for (const DiscLoad& load : fluid.loads()) shared += load.force;
+          whole += Vec3(block->force[0][lane], block->force[1][lane]);
+  for (const BodyLoad& load : fluid.loads()) shared += load.force;
   EXPECT_NEAR((whole - shared).norm(), 0.0, 1e-14);
   EXPECT_GT(whole.norm(), 1e-3);
 }
@@ -60,12 +60,12 @@ TEST(CoverMap, LoadsOfSharedCellsAddUpToTheWholeForce) {
 TEST(CoverMap, LoadsDoNotDependOnTheOrderOfTheDiscs) {
   auto discs = cluster();
   const auto reference = stirred(discs).loads();
-  std::sort(discs.begin(), discs.end(), [](const Disc& a, const Disc& b) { return a.id > b.id; });
+  std::sort(discs.begin(), discs.end(), [](const Body& a, const Body& b) { return a.id > b.id; });
   const auto reversed = stirred(discs).loads();
   for (int i = 0; i < 3; ++i) {
     // sums of two or three fractions in another order: round-off only
     EXPECT_NEAR((reference[i].force - reversed[2 - i].force).norm(), 0.0, 1e-14);
-    EXPECT_NEAR(reference[i].torque, reversed[2 - i].torque, 1e-13);
+    EXPECT_NEAR(reference[i].torque.z(), reversed[2 - i].torque.z(), 1e-13);
   }
 }
 
@@ -76,7 +76,7 @@ TEST(CoverMap, DiscsComeAndGo) {
   const auto discs = cluster();
   cover.update(discs);
   EXPECT_EQ(cover.solid_fraction(20, 20), 1.0);
-  cover.update(std::vector<Disc>{discs[2]});
+  cover.update(std::vector<Body>{discs[2]});
   EXPECT_EQ(cover.solid_fraction(18, 18), 0.0);
   EXPECT_EQ(cover.solid_fraction(24, 26), 1.0);
   cover.update({});
@@ -86,9 +86,9 @@ TEST(CoverMap, DiscsComeAndGo) {
 
 TEST(CoverMap, NextCoveredSkipsPureFluid) {
   CoverMap cover(kDomain, {WeightRule::Viscous, 0.8});
-  cover.update(std::vector<Disc>{{1, {40.5, 20.0}, 2.0, {0, 0}, 0}});
-  EXPECT_EQ(cover.next_covered(20, 0), 38 / kPackWidth);
-  EXPECT_EQ(cover.next_covered(3, 0), cover.blocks_per_row());
+  cover.update(std::vector<Body>{{1, {40.5, 20.0}, 2.0, {0, 0}}});
+  EXPECT_EQ(cover.next_covered(20, 0, 0), 38 / kPackWidth);
+  EXPECT_EQ(cover.next_covered(3, 0, 0), cover.blocks_per_row());
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "lbm_solver/immersed/disc_fraction.h"
+#include "lbm_solver/immersed/solid_fraction.h"
 #include "tests/reference/disc_area.h"
 
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using namespace lbm;
 
 /// Dense map of fractions [y][x]; images that share a cell add up.
-std::vector<double> fraction_map(const Disc& disc, const Domain& d) {
+std::vector<double> fraction_map(const Body& disc, const Domain& d) {
   Footprint footprint;
   footprint.update(disc, d);
   std::vector<double> map(static_cast<std::size_t>(d.nx) * d.ny, 0.0);
@@ -80,11 +80,11 @@ TEST(Footprint, AreaIsThatOfTheDisc) {
 TEST(Footprint, CrossingPeriodicFacesEdgesAndCornersChangesNoFraction) {
   const Domain d{40, 24, Side::Periodic, Side::Periodic};
   // multiples of 2^-10 cells, so that shifted positions are exact
-  const Vec2 inside(17.0 + 311.0 / 1024, 12.0 + 45.0 / 1024);
+  const Vec3 inside(17.0 + 311.0 / 1024, 12.0 + 45.0 / 1024);
   const auto reference = fraction_map({1, inside, 5.25, {0, 0}, 0}, d);
   for (const int sx : {0, 18, 20, 23, 57, -19, -60})
     for (const int sy : {0, 9, 12, 14, 35, -13, -36}) {
-      const auto map = fraction_map({1, inside + Vec2(sx, sy), 5.25, {0, 0}, 0}, d);
+      const auto map = fraction_map({1, inside + Vec3(sx, sy), 5.25, {0, 0}, 0}, d);
       for (int y = 0; y < d.ny; ++y)
         for (int x = 0; x < d.nx; ++x) {
           const int tx = ((x + sx) % d.nx + d.nx) % d.nx, ty = ((y + sy) % d.ny + d.ny) % d.ny;
@@ -95,7 +95,7 @@ TEST(Footprint, CrossingPeriodicFacesEdgesAndCornersChangesNoFraction) {
 
 TEST(Footprint, ArmsPointFromTheImageToTheCell) {
   const Domain d{40, 24, Side::Periodic, Side::Periodic};
-  const Disc disc{1, {0.5, 23.5}, 3.0, {0, 0}, 0};  // across a corner
+  const Body disc{1, {0.5, 23.5}, 3.0, {0, 0}, 0};  // across a corner
   Footprint footprint;
   footprint.update(disc, d);
   double area = 0.0;
@@ -110,7 +110,7 @@ TEST(Footprint, ArmsPointFromTheImageToTheCell) {
 
 TEST(Footprint, TheCoreIsWholeAndDeep) {
   const Domain d{64, 64, Side::Wall, Side::Wall};
-  const Disc disc{1, {31.7, 30.2}, 9.6, {0, 0}, 0};
+  const Body disc{1, {31.7, 30.2}, 9.6, {0, 0}, 0};
   Footprint footprint;
   footprint.update(disc, d);
   int core = 0;

@@ -21,9 +21,9 @@ double exact_resistance(double gap, double radius, double viscosity) {
   return 4.0 * std::numbers::pi * viscosity / (alpha - std::tanh(alpha));
 }
 
-std::vector<DiscLoad> loads(const Lubrication& l, const std::vector<Disc>& discs,
+std::vector<BodyLoad> loads(const Lubrication& l, const std::vector<Body>& discs,
                             const std::vector<double>& masses) {
-  std::vector<DiscLoad> result(discs.size());
+  std::vector<BodyLoad> result(discs.size());
   l.add(discs, masses, kDomain, result);
   return result;
 }
@@ -41,7 +41,7 @@ TEST(Lubrication, TendsToTheExactResistanceInNarrowGaps) {
 
 TEST(Lubrication, ActsEquallyOnBothAndAgainstTheMotion) {
   const Lubrication l{0.1, 1.0, 1.0};
-  const std::vector<Disc> discs{{1, {20.0, 20.0}, 5.0, {0.01, 0.0}, 0.0},
+  const std::vector<Body> discs{{1, {20.0, 20.0}, 5.0, {0.01, 0.0}, 0.0},
                                 {2, {30.3, 20.0}, 5.0, {-0.02, 0.0}, 0.0},
                                 {3, {45.0, 20.0}, 4.0, {0.5, 0.0}, 0.0}};
   const auto result = loads(l, discs, {100.0, 200.0, 100.0});

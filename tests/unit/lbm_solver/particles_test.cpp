@@ -30,22 +30,24 @@ protocol::Particle particle(double vx, double omega) {
   return {{9, {0.005, 0.01, 0.0}, {vx, 0.0, 0.0}, {0.0, 0.0, omega}}, {9, kRadius, 4e-3, 2e-9, 1}};
 }
 
+const Domain kDomain{100, 100};
+
 TEST(Particles, EntersLatticeUnits) {
-  Particles particles(kUnits, scene_of({}));
+  Particles particles(kUnits, scene_of({}), kDomain);
   particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
-  const auto discs = particles.discs(2e-4);
-  EXPECT_NEAR(discs[0].centre.x(), 50.0 + 0.02 * 2e-4 / 1e-4, 1e-12);  // moved on straight
-  EXPECT_NEAR(discs[0].radius, 10.0, 1e-12);
-  EXPECT_NEAR(discs[0].velocity.x(), 0.02 / 0.5, 1e-15);
-  EXPECT_NEAR(discs[0].spin, 30.0 * 2e-4, 1e-15);
+  const auto bodies = particles.bodies(2e-4);
+  EXPECT_NEAR(bodies[0].centre.x(), 50.0 + 0.02 * 2e-4 / 1e-4, 1e-12);  // moved on straight
+  EXPECT_NEAR(bodies[0].radius, 10.0, 1e-12);
+  EXPECT_NEAR(bodies[0].velocity.x(), 0.02 / 0.5, 1e-15);
+  EXPECT_NEAR(bodies[0].spin.z(), 30.0 * 2e-4, 1e-15);
   EXPECT_NEAR(particles.max_speed(), 0.02 + 30.0 * kRadius, 1e-15);
 }
 
 TEST(Particles, LoadIsTheMeanInSiUnitsWithBuoyancy) {
-  Particles particles(kUnits, scene_of({}));
+  Particles particles(kUnits, scene_of({}), kDomain);
   particles.arrive(std::vector{particle(0.0, 0.0)}, 4e-4);
-  particles.add(std::vector<DiscLoad>{{{2.0, 0.0}, 4.0}});
-  particles.add(std::vector<DiscLoad>{{{4.0, 0.0}, 0.0}});
+  particles.add(std::vector<BodyLoad>{{{2.0, 0.0}, {0.0, 0.0, 4.0}}});
+  particles.add(std::vector<BodyLoad>{{{4.0, 0.0}, {0.0, 0.0, 0.0}}});
   const auto load = particles.mean_loads(2)[0];
   // one lattice unit of force: rho dx^3 depth / dt^2 (2D, a layer of thickness depth)
   const double force = 1000.0 * 1e-12 * 0.5 / (2e-4 * 2e-4);
@@ -60,12 +62,12 @@ TEST(Particles, GivesBackTheInertiaOfTheFluidInside) {
   coupling.buoyancy = protocol::Buoyancy::None;
   for (const bool on : {true, false}) {
     coupling.inner_inertia = on;
-    Particles particles(kUnits, scene_of(coupling));
+    Particles particles(kUnits, scene_of(coupling), kDomain);
     particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
-    particles.add(std::vector<DiscLoad>(1));
+    particles.add(std::vector<BodyLoad>(1));
     EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);  // new: its past is unknown
     particles.arrive(std::vector{particle(0.03, 32.0)}, 4e-4);
-    particles.add(std::vector<DiscLoad>(1));
+    particles.add(std::vector<BodyLoad>(1));
     const auto load = particles.mean_loads(1)[0];
     EXPECT_NEAR(load.force[0], on ? kFluidMass * 0.01 / 4e-4 : 0.0, 1e-12);
     EXPECT_NEAR(load.torque[2], on ? 0.5 * kFluidMass * kRadius * kRadius * 2.0 / 4e-4 : 0.0,
@@ -76,13 +78,13 @@ TEST(Particles, GivesBackTheInertiaOfTheFluidInside) {
 TEST(Particles, AParticleThatLeftAndCameBackHasNoPast) {
   CouplingScene coupling;
   coupling.buoyancy = protocol::Buoyancy::None;
-  Particles particles(kUnits, scene_of(coupling));
+  Particles particles(kUnits, scene_of(coupling), kDomain);
   particles.arrive(std::vector{particle(0.02, 0.0)}, 4e-4);
   particles.arrive({}, 4e-4);
-  EXPECT_EQ(particles.discs(0.0).size(), 0U);
+  EXPECT_EQ(particles.bodies(0.0).size(), 0U);
   EXPECT_EQ(particles.mean_loads(1).size(), 0U);
   particles.arrive(std::vector{particle(0.05, 0.0)}, 4e-4);
-  particles.add(std::vector<DiscLoad>(1));
+  particles.add(std::vector<BodyLoad>(1));
   EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);
 }
 
@@ -91,11 +93,11 @@ TEST(Particles, VirtualMassLeavesASteadyLoadAsItIs) {
   CouplingScene coupling;
   coupling.buoyancy = protocol::Buoyancy::None;
   coupling.virtual_mass = 2.0;
-  Particles particles(kUnits, scene_of(coupling));
+  Particles particles(kUnits, scene_of(coupling), kDomain);
   protocol::Load load;
   for (int k = 0; k < 60; ++k) {
     particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
-    particles.add(std::vector<DiscLoad>{{{2.0, 0.0}, 4.0}});
+    particles.add(std::vector<BodyLoad>{{{2.0, 0.0}, {0.0, 0.0, 4.0}}});
     load = particles.mean_loads(1)[0];
   }
   const double force = 1000.0 * 1e-12 * 0.5 / (2e-4 * 2e-4);
@@ -106,12 +108,12 @@ TEST(Particles, VirtualMassLeavesASteadyLoadAsItIs) {
 TEST(Particles, TheFluidSeesTheHydraulicRadius) {
   Scene scene = scene_of({});
   scene.particles->hydraulic_ratio = {1.0, 0.8};
-  Particles particles(kUnits, scene);
+  Particles particles(kUnits, scene, kDomain);
   protocol::Particle small = particle(0.0, 0.0);
   small.shape.type = 2;
   particles.arrive(std::vector{small}, 4e-4);
-  EXPECT_NEAR(particles.discs(0.0)[0].radius, 8.0, 1e-12);
-  particles.add(std::vector<DiscLoad>(1));
+  EXPECT_NEAR(particles.bodies(0.0)[0].radius, 8.0, 1e-12);
+  particles.add(std::vector<BodyLoad>(1));
   // buoyancy of the disc that the fluid sees
   EXPECT_NEAR(particles.mean_loads(1)[0].force[1], 0.64 * kFluidMass * 9.8, 1e-12);
 }

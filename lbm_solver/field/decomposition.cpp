@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/field/decomposition.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace lbm {
+namespace {
+
+constexpr int kTag = 7101;
+constexpr int kLeastCells = 2;  // along an axis that is cut: boundaries look one cell inward
+
+template <class T>
+MPI_Datatype type_of() {
+  if constexpr (std::is_same_v<T, float>)
+    return MPI_FLOAT;
+  else
+    return MPI_DOUBLE;
+}
+
+/// Copies a block's values between its own list and the list of the whole box.
+template <class T, class Copy>
+void each_row(const Domain& d, const Block& b, int components, T* global, Copy&& copy) {
+  std::size_t local = 0;
+  const std::size_t count = static_cast<std::size_t>(b.size[0]) * components;
+  for (int z = 0; z < b.size[2]; ++z)
+    for (int y = 0; y < b.size[1]; ++y, local += count) {
+      const std::size_t row = static_cast<std::size_t>(z + b.begin[2]) * d.ny + y + b.begin[1];
+      copy(local, global + (row * d.nx + b.begin[0]) * components, count);
+    }
+}
+
+std::size_t volume(const Block& b) {
+  return static_cast<std::size_t>(b.size[0]) * b.size[1] * b.size[2];
+}
+
+}  // namespace
+
+Decomposition::Decomposition(const Domain& domain)
+    : domain_(domain), cells_(Block::whole(domain)) {}
+
+Decomposition::Decomposition(const Domain& domain, MPI_Comm comm, const Cell3& grid)
+    : domain_(domain), comm_(comm), grid_(grid) {
+  MPI_Comm_rank(comm, &rank_);
+  MPI_Comm_size(comm, &size_);
+  for (int a = 0; a < 3; ++a)
+    if (grid[a] > 1 && domain.cells()[a] / grid[a] < kLeastCells)
+      throw std::invalid_argument(std::to_string(grid[a]) + " ranks along " + "xyz"[a] + " for " +
+                                  std::to_string(domain.cells()[a]) + " cells");
+  if (grid[0] * grid[1] * grid[2] != size_)
+    throw std::invalid_argument("the grid of ranks has not as many as there are");
+  cells_ = cells_of(rank_);
+}
+
+Cell3 Decomposition::place_of(int rank) const {
+  return {rank % grid_[0], rank / grid_[0] % grid_[1], rank / (grid_[0] * grid_[1])};
+}
+
+Block Decomposition::cells_of(int rank) const {
+  const Cell3 place = place_of(rank), n = domain_.cells();
+  Block block = Block::whole(domain_);
+  for (int a = 0; a < 3; ++a) {
+    const auto border = [&](int p) {
+      return static_cast<int>(static_cast<long long>(n[a]) * p / grid_[a]);
+    };
+    block.begin[a] = border(place[a]);
+    block.size[a] = border(place[a] + 1) - block.begin[a];
+    if (grid_[a] == 1) continue;
+    const bool wall = domain_.sides()[a] == Side::Wall;
+    block.faces[a][0] = wall && place[a] == 0 ? Face::Wall : Face::Neighbour;
+    block.faces[a][1] = wall && place[a] == grid_[a] - 1 ? Face::Wall : Face::Neighbour;
+  }
+  return block;
+}
+
+int Decomposition::neighbour(int axis, int high) const {
+  if (cells_.faces[axis][high] != Face::Neighbour) return -1;
+  Cell3 place = place_of(rank_);
+  place[axis] = (place[axis] + (high ? 1 : grid_[axis] - 1)) % grid_[axis];
+  return place[0] + grid_[0] * (place[1] + grid_[1] * place[2]);
+}
+
+void Decomposition::sum(std::span<double> values) const {
+  if (alone()) return;
+  const int n = static_cast<int>(values.size());
+  std::vector<double> all(rank_ == 0 ? values.size() * size_ : 0);
+  MPI_Gather(values.data(), n, MPI_DOUBLE, all.data(), n, MPI_DOUBLE, 0, comm_);
+  if (rank_ == 0) {
+    std::fill(values.begin(), values.end(), 0.0);
+    for (std::size_t i = 0; i < all.size(); ++i) values[i % values.size()] += all[i];
+  }
+  MPI_Bcast(values.data(), n, MPI_DOUBLE, 0, comm_);
+}
+
+double Decomposition::max(double value) const {
+  if (!alone()) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, comm_);
+  return value;
+}
+
+template <class T>
+std::vector<T> Decomposition::gather(std::vector<T> local, int components) const {
+  if (alone()) return local;
+  if (rank_ != 0) {
+    MPI_Send(local.data(), static_cast<int>(local.size()), type_of<T>(), 0, kTag, comm_);
+    return {};
+  }
+  const Cell3 n = domain_.cells();
+  std::vector<T> global(static_cast<std::size_t>(n[0]) * n[1] * n[2] * components);
+  for (int r = 0; r < size_; ++r) {
+    const Block block = cells_of(r);
+    if (r > 0) {
+      local.resize(volume(block) * components);
+      MPI_Recv(local.data(), static_cast<int>(local.size()), type_of<T>(), r, kTag, comm_,
+               MPI_STATUS_IGNORE);
+    }
+    each_row(domain_, block, components, global.data(),
+             [&](std::size_t at, T* to, std::size_t k) { std::copy_n(&local[at], k, to); });
+  }
+  return global;
+}
+
+template <class T>
+std::vector<T> Decomposition::scatter(std::vector<T> global, int components) const {
+  if (alone()) return global;
+  std::vector<T> mine(volume(cells_) * components);
+  if (rank_ != 0) {
+    MPI_Recv(mine.data(), static_cast<int>(mine.size()), type_of<T>(), 0, kTag, comm_,
+             MPI_STATUS_IGNORE);
+    return mine;
+  }
+  for (int r = size_ - 1; r >= 0; --r) {
+    const Block block = cells_of(r);
+    mine.resize(volume(block) * components);
+    each_row(domain_, block, components, global.data(),
+             [&](std::size_t at, T* from, std::size_t k) { std::copy_n(from, k, &mine[at]); });
+    if (r > 0) MPI_Send(mine.data(), static_cast<int>(mine.size()), type_of<T>(), r, kTag, comm_);
+  }
+  return mine;
+}
+
+template std::vector<float> Decomposition::gather(std::vector<float>, int) const;
+template std::vector<double> Decomposition::gather(std::vector<double>, int) const;
+template std::vector<double> Decomposition::scatter(std::vector<double>, int) const;
+
+std::vector<double> Decomposition::collect(const std::vector<double>& local) const {
+  if (alone()) return local;
+  const int n = static_cast<int>(local.size());
+  std::vector<int> counts(size_), starts(size_, 0);
+  MPI_Gather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm_);
+  for (int r = 1; r < size_; ++r) starts[r] = starts[r - 1] + counts[r - 1];
+  std::vector<double> all(rank_ == 0 ? starts.back() + counts.back() : 0);
+  MPI_Gatherv(local.data(), n, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, 0,
+              comm_);
+  return all;
+}
+
+void Decomposition::broadcast(std::vector<double>& values) const {
+  if (alone()) return;
+  auto n = static_cast<unsigned long long>(values.size());
+  MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, comm_);
+  values.resize(n);
+  MPI_Bcast(values.data(), static_cast<int>(n), MPI_DOUBLE, 0, comm_);
+}
+
+Cell3 choose_grid(const Domain& domain, int ranks) {
+  const Cell3 n = domain.cells();
+  Cell3 best{0, 0, 0};
+  double least = std::numeric_limits<double>::infinity();
+  for (int x = 1; x <= ranks; ++x)
+    for (int y = 1; x * y <= ranks; ++y) {
+      const int z = ranks / (x * y);
+      const Cell3 grid{x, y, z};
+      if (x * y * z != ranks) continue;
+      double surface = 0.0;  // of the cuts, over the box's volume
+      bool fits = true;
+      for (int a = 0; a < 3; ++a) {
+        if (grid[a] > 1) surface += static_cast<double>(grid[a]) / n[a];
+        fits = fits && (grid[a] == 1 || n[a] / grid[a] >= kLeastCells);
+      }
+      if (!fits || surface > least * (1.0 - 1e-12)) continue;  // later ones cut more of x and y
+      least = surface;
+      best = grid;
+    }
+  if (best[0] == 0)
+    throw std::invalid_argument(std::to_string(ranks) + " ranks for a box of " +
+                                std::to_string(n[0]) + " × " + std::to_string(n[1]) + " × " +
+                                std::to_string(n[2]) + " cells");
+  return best;
+}
+
+}  // namespace lbm

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <mpi.h>
+
+#include <span>
+#include <vector>
+
+#include "lbm_solver/field/domain.h"
+
+namespace lbm {
+
+/// How the cells of the box are divided among the ranks of this program: a grid of blocks, each of
+/// about the same size. Rank 0 gathers what is written to files. All functions that say so are
+/// collective: every rank calls them at the same place.
+class Decomposition {
+ public:
+  /// The whole box on one rank; needs no MPI.
+  explicit Decomposition(const Domain& domain);
+  /// @param comm  all ranks of this program; must outlive the object
+  /// @param grid  ranks along x, y, z; their product is the size of `comm`
+  /// @throws std::invalid_argument where a rank would be left without two cells along an axis
+  Decomposition(const Domain& domain, MPI_Comm comm, const Cell3& grid);
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+  bool alone() const { return size_ == 1; }
+  MPI_Comm comm() const { return comm_; }
+  const Cell3& grid() const { return grid_; }
+  const Domain& domain() const { return domain_; }
+  /// This rank's cells.
+  const Block& cells() const { return cells_; }
+  Block cells_of(int rank) const;
+  /// Rank beyond a face, -1 where there is none or it is this one. @param high  0 low, 1 high
+  int neighbour(int axis, int high) const;
+
+  /// Sum over ranks in rank order, of each number; on every rank. Collective.
+  void sum(std::span<double> values) const;
+  /// Largest over ranks; on every rank. Collective.
+  double max(double value) const;
+
+  /// Values of every cell, [z][y][x][components], brought together on rank 0 (elsewhere empty), and
+  /// the other way. Collective.
+  template <class T>
+  std::vector<T> gather(std::vector<T> local, int components) const;
+  template <class T>
+  std::vector<T> scatter(std::vector<T> global, int components) const;
+  /// The lists of all ranks in rank order, on rank 0 (elsewhere empty). Collective.
+  std::vector<double> collect(const std::vector<double>& local) const;
+  /// Rank 0's list, on every rank. Collective.
+  void broadcast(std::vector<double>& values) const;
+
+ private:
+  Cell3 place_of(int rank) const;
+
+  Domain domain_;
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+  Cell3 grid_{1, 1, 1};
+  Block cells_;
+};
+
+/// The grid of `ranks` blocks whose surface is smallest; of equals the one that cuts z, then y:
+/// rows along x stay whole, and only layers across the last axis can be exchanged during a sweep.
+Cell3 choose_grid(const Domain& domain, int ranks);
+
+}  // namespace lbm

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// A box shared by several ranks against the same box on one: started as `mpirun -np N ranks`,
+/// where every rank also sweeps the whole box by itself and compares its own cells: bit for bit
+/// where rows are whole. Where x is cut, a covered cell shares its SIMD block with other cells,
+/// which a float box sweeps in double precision with it: then to round-off of what is stored.
+#include <gtest/gtest.h>
+#include <mpi.h>
+#include <omp.h>
+
+#include <random>
+
+#include "lbm_solver/coupling/lubrication.h"
+#include "lbm_solver/solver/fluid.h"
+
+namespace {
+
+using namespace lbm;
+
+int world_size() {
+  int size = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  return size;
+}
+
+/// A population of the random state, the same on whatever rank asks.
+double noise(const Domain& d, int q, int x, int y, int z) {
+  std::minstd_rand random(static_cast<unsigned>(((z * d.ny + y) * d.nx + x) * 27 + q + 1));
+  random.discard(3);
+  return 1e-3 * (2.0 * random() / std::minstd_rand::max() - 1.0);
+}
+
+void randomise(Fluid& fluid) {
+  const Cell3 &n = fluid.cells().size, &b = fluid.cells().begin;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x)
+        for (int q = 0; q < fluid.lattice().Q; ++q)
+          fluid.arriving(q, x, y, z) = noise(fluid.domain(), q, x + b[0], y + b[1], z + b[2]);
+}
+
+/// Sides with an inlet, an outlet and a lid where there are walls for them.
+void add_patches(Fluid& fluid) {
+  const Domain& d = fluid.domain();
+  if (d.x == Side::Wall) {
+    Opening in = Opening::whole(d, SideName::Left), out = Opening::whole(d, SideName::Right);
+    if (!in.closed[0]) in.begin[0] = 2;  // begins within a rank, ends in another
+    fluid.add(std::make_unique<VelocityPatch>(fluid.lattice(), fluid.links(in), Vec3(0.02, 0.0),
+                                              true, in, InTime{}));
+    fluid.add(std::make_unique<OutflowPatch>(fluid.links(out), out.side, 0.001, 0.01));
+  }
+  if (d.y == Side::Wall) {
+    const Opening top = Opening::whole(d, SideName::Top);
+    fluid.add(std::make_unique<PressurePatch>(fluid.links(top), top.side, 0.002, InTime{}));
+  }
+}
+
+/// One wider than a subdomain over the middle of the box, one over its corner, one in contact with
+/// the first.
+std::vector<Body> bodies_in(const Domain& d) {
+  const bool flat = d.dimension() == 2;
+  const Vec3 middle(0.5 * d.nx + 0.3, 0.5 * d.ny - 0.2, flat ? 0.0 : 0.5 * d.nz + 0.4);
+  std::vector<Body> bodies{{1, middle, 5.1, {0.01, -0.02, 0.01}, {0.001, 0.002, -0.003}},
+                           {2, {0.3, 0.6, 0.2}, 3.2, {-0.01, 0.01, 0.02}, {0.002, 0.0, 0.001}},
+                           {3, middle + Vec3(7.9, 0.4, 0.0), 2.7, {0.0, 0.01, 0.0}, Spin()}};
+  for (Body& b : bodies)
+    if (flat) {
+      b.centre.z() = b.velocity.z() = 0.0;
+      b.spin = b.spin.z();
+    }
+  return bodies;
+}
+
+/// Round-off of populations (deviations up to 0.05) and of a body's load.
+struct Limits {
+  double population, load;
+};
+Limits limits(Precision precision, const Cell3& grid) {
+  const bool whole_rows = grid[0] == 1;
+  if (precision == Precision::Double) return {whole_rows ? 0.0 : 1e-16, 1e-13};
+  return {whole_rows ? 0.0 : 2e-8, whole_rows ? 1e-13 : 2e-7};
+}
+
+void expect_same_cells(const Fluid& part, const Fluid& whole, double limit) {
+  const Cell3 &n = part.cells().size, &b = part.cells().begin;
+  double largest = 0.0;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x)
+        for (int q = 0; q < part.lattice().Q; ++q) {
+          const double here = part.arriving(q, x, y, z);
+          const double there = whole.arriving(q, x + b[0], y + b[1], z + b[2]);
+          if (std::abs(here - there) > limit && largest == 0.0)
+            ADD_FAILURE() << "rank " << part.ranks().rank() << ": f_" << q << " at " << x + b[0]
+                          << ' ' << y + b[1] << ' ' << z + b[2] << " is " << here << ", alone "
+                          << there;
+          largest = std::max(largest, std::abs(here - there));
+        }
+  EXPECT_LE(largest, limit);
+}
+
+struct Box {
+  std::string lattice;
+  Domain domain;
+};
+
+std::vector<Box> boxes() {
+  std::vector<Box> all;
+  const Side sides[] = {Side::Periodic, Side::Wall};
+  for (const Side x : sides)
+    for (const Side y : sides) {
+      all.push_back({"D2Q9", {29, 23, x, y}});
+      for (const Side z : sides)
+        for (const char* lattice : {"D3Q19", "D3Q27"})
+          all.push_back({lattice, {23, 14, x, y, 13, z}});
+    }
+  return all;
+}
+
+/// Every grid of as many ranks as there are that leaves each two cells along an axis.
+std::vector<Cell3> grids(const Domain& d) {
+  std::vector<Cell3> all;
+  const int n = world_size();
+  for (int x = 1; x <= n; ++x)
+    for (int y = 1; x * y <= n; ++y)
+      if (n % (x * y) == 0 && d.nx >= 2 * x && d.ny >= 2 * y &&
+          (x * y == n || d.nz >= 2 * n / (x * y)))
+        all.push_back({x, y, n / (x * y)});
+  return all;
+}
+
+KernelChoice choice_for(const std::string& lattice, Precision precision) {
+  return {.collision = "trt",
+          .solid_term = "layered_holdych",
+          .parameters = {.tau = 0.7},
+          .lattice = lattice,
+          .precision = precision};
+}
+
+std::vector<double> numbers(const std::vector<BodyLoad>& loads) {
+  std::vector<double> all;
+  for (const BodyLoad& l : loads)
+    for (const Vec3* v : {&l.force, &l.torque}) all.insert(all.end(), v->begin(), v->end());
+  return all;
+}
+
+void expect_near(const std::vector<double>& a, const std::vector<double>& b, double limit) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], limit) << i;
+}
+
+TEST(Ranks, SweepTheSameCellsAsOneAlone) {
+  for (const Box& box : boxes())
+    for (const Cell3& grid : grids(box.domain))
+      for (const Precision precision : {Precision::Double, Precision::Single}) {
+        const Decomposition ranks(box.domain, MPI_COMM_WORLD, grid);
+        SCOPED_TRACE(testing::Message() << box.lattice << ' ' << grid[0] << grid[1] << grid[2]);
+        const KernelChoice choice = choice_for(box.lattice, precision);
+        const Limits limit = limits(precision, grid);
+        Fluid part(ranks, choice), whole(box.domain, choice);
+        for (Fluid* f : {&part, &whole}) {
+          add_patches(*f);
+          f->add_wall({3, 0, 0}, {9, 4, box.domain.nz});
+          randomise(*f);
+        }
+        std::vector<Body> bodies = bodies_in(box.domain);
+        for (int step = 0; step < 5; ++step) {
+          part.place(bodies);
+          whole.place(bodies);
+          part.step();
+          whole.step();
+          std::vector<double> sums = numbers(part.loads());
+          ranks.sum(sums);
+          expect_near(sums, numbers(whole.loads()), limit.load);
+          for (Body& b : bodies) b.centre += b.velocity;
+        }
+        expect_same_cells(part, whole, limit.population);
+        const auto a = part.extremes(), b = whole.extremes();
+        const double of_sums = 1e-12 + 1e4 * limit.population;
+        EXPECT_NEAR(a.max_speed, b.max_speed, 30.0 * limit.population);
+        EXPECT_EQ(a.cell, b.cell);
+        EXPECT_NEAR(a.mass_excess, b.mass_excess, of_sums);
+        EXPECT_NEAR(part.mass_in(), whole.mass_in(), of_sums);
+        const Vec3 place(0.5 * box.domain.nx, 0.5 * box.domain.ny, 0.5 * box.domain.nz);
+        EXPECT_NEAR(part.at(place).u.x(), whole.at(place).u.x(), 1e-15 + 30.0 * limit.population);
+      }
+}
+
+TEST(Ranks, GoOnFromAStateOfAnotherGrid) {
+  const Domain domain{23, 14, Side::Wall, Side::Periodic, 13, Side::Wall};
+  const KernelChoice choice = choice_for("D3Q19", Precision::Double);
+  const auto make = [&](const Decomposition& ranks) {
+    Fluid fluid(ranks, choice);
+    add_patches(fluid);
+    fluid.place(bodies_in(domain));
+    return fluid;
+  };
+  const auto all = grids(domain);
+  const Decomposition first(domain, MPI_COMM_WORLD, all.front());
+  const Decomposition second(domain, MPI_COMM_WORLD, all.back());
+  Fluid one = make(first), two = make(second), whole = make(Decomposition(domain));
+  randomise(one);
+  randomise(whole);
+  one.advance(7);  // an odd number: the state does not depend on the slots' parity
+  whole.advance(7);
+  auto state = one.state();
+  for (auto& [name, values] : state)
+    if (name != "populations") first.broadcast(values);
+  two.restore(state);
+  two.advance(4);
+  whole.advance(4);
+  expect_same_cells(two, whole, 1e-16);
+  EXPECT_NEAR(two.mass_in(), whole.mass_in(), 1e-13);
+}
+
+TEST(Ranks, AddEachLubricationForceOnce) {
+  for (const Side side : {Side::Periodic, Side::Wall}) {
+    const Domain domain{24, 20, side, side, 16, side};
+    std::vector<Body> bodies;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> at(0.0, 1.0), speed(-0.01, 0.01);
+    for (int i = 0; i < 60; ++i)
+      bodies.push_back({i,
+                        {24.0 * at(random), 20.0 * at(random), 16.0 * at(random)},
+                        1.5,
+                        {speed(random), speed(random), speed(random)}});
+    const std::vector<double> masses(bodies.size(), 20.0);
+    const Lubrication lubrication{0.1, 1.0, 1.0};
+    std::vector<BodyLoad> whole(bodies.size());
+    lubrication.add(bodies, masses, domain, whole);
+    for (const Cell3& grid : grids(domain)) {
+      const Decomposition ranks(domain, MPI_COMM_WORLD, grid);
+      std::vector<BodyLoad> part(bodies.size());
+      lubrication.add(bodies, masses, domain, ranks.cells(), part);
+      std::vector<double> sums = numbers(part);
+      ranks.sum(sums);
+      expect_near(sums, numbers(whole), 1e-14);
+    }
+  }
+}
+
+TEST(Ranks, CutZFirstAndNeverTooThin) {
+  EXPECT_EQ(choose_grid({40, 40, Side::Wall, Side::Wall, 40}, 2), (Cell3{1, 1, 2}));
+  EXPECT_EQ(choose_grid({40, 40, Side::Wall, Side::Wall, 40}, 4), (Cell3{1, 1, 4}));
+  EXPECT_EQ(choose_grid({40, 40, Side::Wall, Side::Wall, 40}, 8), (Cell3{1, 2, 4}));
+  EXPECT_EQ(choose_grid({40, 40, Side::Wall, Side::Wall}, 3), (Cell3{1, 3, 1}));
+  EXPECT_EQ(choose_grid({4000, 40, Side::Wall, Side::Wall}, 4), (Cell3{4, 1, 1}));
+  EXPECT_THROW(choose_grid({4, 4, Side::Wall, Side::Wall}, 7), std::invalid_argument);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int level = 0;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
+  testing::InitGoogleTest(&argc, argv);
+  omp_set_num_threads(world_size() <= 2 ? 2 : 1);
+  int failed = RUN_ALL_TESTS();
+  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  MPI_Finalize();
+  return failed;
+}
