@@ -81,7 +81,7 @@ struct NumericsScene {
   std::string solid_term = "auto";
   std::string scheme = "auto";      ///< one of known_schemes()
   double spring_stiffness = 0.001;  ///< of the spring scheme, lattice units
-  bool weight_is_fraction = false;  ///< B = ε instead of B(ε, τ)
+  std::string weight = "auto";      ///< viscous, balanced or fraction; auto: viscous, balanced
   double magic = 3.0 / 16.0;        ///< Λ of TRT
   double smagorinsky = 0.0;         ///< S_c; 0: no turbulence model
 };

@@ -46,6 +46,18 @@ double measure_step(Fluid& fluid, const std::vector<Body>& bodies) {
   return seconds / steps;
 }
 
+const char* weight_text(WeightRule rule) {
+  switch (rule) {
+    case WeightRule::Viscous:
+      return " with B(ε,τ)";
+    case WeightRule::Balanced:
+      return " with balanced B(ε,τ)";
+    case WeightRule::Fraction:
+      break;
+  }
+  return " with B = ε";
+}
+
 std::string boundary_text(const Scene& s) {
   int velocity = 0, pressure = 0, outflow = 0;
   for (const auto& b : s.boundaries) {
@@ -120,9 +132,7 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   part(p.kernel.turbulence != "none", "Smagorinsky turbulence", "turbulence model");
   const bool imb = p.scheme == known_schemes().front();
   part(p.kernel.solid_term != "none" || !imb,
-       imb ? "covered cells " + p.kernel.solid_term +
-                 (p.kernel.weight == WeightRule::Viscous ? " with B(ε,τ)" : " with B = ε") +
-                 ", loads"
+       imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel.weight) + ", loads"
            : p.scheme + ", loads",
        "solids");
   part(!s.obstacles.empty(), fmt::format("{} obstacles at rest", s.obstacles.size()), "obstacles");

@@ -78,8 +78,7 @@ class TwoEquilibria {
 /// drove the fluid.
 class CoveredCollision {
  public:
-  CoveredCollision(const SolidTerm& term, WeightRule rule)
-      : term_(term), resistance_(rule == WeightRule::Viscous ? 1.0 : 0.0) {}
+  CoveredCollision(const SolidTerm& term, WeightRule rule) : term_(term), resistance_(rule) {}
 
   /// What the cover map knows of a cell.
   template <class L, class V>
@@ -99,10 +98,8 @@ class CoveredCollision {
     const V rho = m.drho + V(1.0);
     const Vector<L, V> u = velocity<L>(m, NoForce<L>({}));
     V weight = cell.weight;
-    if constexpr (Collision::turbulent) {
-      const V s = collide.relaxation_time(f, m) - V(0.5);
-      weight = weight * s / (V(resistance_) * (V(1.0) - weight) + s);
-    }
+    if constexpr (Collision::turbulent)
+      weight = resistance_.weight(weight, collide.relaxation_time(f, m) - V(0.5));
     const auto surface = cell.layer > V(0.5), core = cell.layer < V(-0.5);
     const auto pick = [&](const double SolidTerm::Parts::*part,
                           const SolidTerm::Parts SolidTerm::Halves::*half)
@@ -166,7 +163,7 @@ class CoveredCollision {
 
  private:
   SolidTerm term_;
-  double resistance_;  // of the fluid part of a cell: 1 in B(ε,τ), 0 where B = ε
+  ResistanceOfWeight resistance_;
 };
 
 }  // namespace lbm

@@ -100,7 +100,7 @@ NumericsScene read_numerics(TableReader t, int d) {
                   {"auto", "immersed_moving_boundary", "bounce_back", "interpolated_bounce_back",
                    "implicit_immersed_boundary", "spring_immersed_boundary"});
   n.spring_stiffness = t.number_or("spring_stiffness", n.spring_stiffness, Bounds::positive(), "");
-  n.weight_is_fraction = t.choice_or("weight", "viscous", {"viscous", "fraction"}) == "fraction";
+  n.weight = t.choice_or("weight", n.weight, {"auto", "viscous", "balanced", "fraction"});
   n.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
   n.magic = t.number_or("magic", n.magic, {1e-6, 10.0}, "");
   t.finish();

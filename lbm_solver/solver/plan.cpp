@@ -204,7 +204,10 @@ void choose_solids(const Scene& s, Plan& plan) {
     if (blocks) k.solid_term = "noble_torczynski";  // walls are covered cells under any scheme
     return;
   }
-  k.weight = n.weight_is_fraction ? WeightRule::Fraction : WeightRule::Viscous;
+  const bool balanced = n.weight == "balanced" || (n.weight == "auto" && s.box.dimension == 3);
+  k.weight = n.weight == "fraction" ? WeightRule::Fraction
+             : balanced             ? WeightRule::Balanced
+                                    : WeightRule::Viscous;
   k.solid_term = n.solid_term;
   if (n.solid_term != "auto") return;
   const auto take = [&](const char* term, const char* reason) {

@@ -111,7 +111,8 @@ std::vector<KernelChoice> rows_of(const std::string& lattice, Precision precisio
   };
   std::vector<Solids> all_solids{{"none"}, {"layered_holdych"}};
   if (lattice == "D2Q9" && precision == Precision::Double) {
-    all_solids = {{"none"}, {"noble_torczynski", WeightRule::Fraction}};
+    all_solids = {
+        {"none"}, {"noble_torczynski", WeightRule::Fraction}, {"holdych", WeightRule::Balanced}};
     for (const std::string& term : known_solid_terms()) all_solids.push_back({term});
   }
   for (const std::string& collision : known_collisions())
@@ -157,7 +158,9 @@ std::vector<Domain> domains_of(const KernelChoice& c) {
 std::string name_of(const KernelChoice& c) {
   return c.lattice + (c.precision == Precision::Single ? "_single_" : "_") + c.collision +
          (c.turbulence == "none" ? "" : "_les") + (c.force ? "_force" : "") + "_" + c.solid_term +
-         (c.weight == WeightRule::Fraction ? "_fraction" : "");
+         (c.weight == WeightRule::Fraction   ? "_fraction"
+          : c.weight == WeightRule::Balanced ? "_balanced"
+                                             : "");
 }
 
 class KernelTest : public testing::TestWithParam<KernelChoice> {};
