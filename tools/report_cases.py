@@ -8,6 +8,7 @@ OURS, PAPERS, STAIRS = "ours", "papers", "staircase"
 SCHEMES = {
     "default, bodies at rest: TRT, Holdych": (OURS, {}),
     "default, free bodies: TRT, layered Holdych": (OURS, {"solid_term": "layered_holdych"}),
+    "TRT, layered Holdych, balanced weight": (OURS, {"solid_term": "layered_holdych", "weight": "balanced"}),
     "central moments, layered Noble–Torczynski":
         (None, {"collision": "central_moment", "solid_term": "layered_noble_torczynski"}),
     "TRT, Noble–Torczynski": (None, {"collision": "trt", "solid_term": "noble_torczynski"}),
@@ -44,6 +45,38 @@ def array_rows(full):
                            "run": {"end_time": 8.0}, "output": {"fields_every": 8.0, "probe_every": 0.1}}
                           for x, y in ((0, 0), (0.5, 0.5), (0.23, 0.41))]
                 yield label, family, f"D/h {5.046e-4 / h:.0f}, τ {tau}", places, ()
+
+
+SPHERE_SCHEMES = {  # in three dimensions, where the balanced weight is the default
+    "default, bodies at rest: TRT, Holdych": (OURS, {}),
+    "default, free bodies: TRT, layered Holdych": (OURS, {"solid_term": "layered_holdych"}),
+    "default, D3Q27": (OURS, {"lattice": "D3Q27"}),
+    "default, single precision": (OURS, {"precision": "single"}),
+    "default, D3Q27, single precision": (OURS, {"lattice": "D3Q27", "precision": "single"}),
+    "TRT, Holdych, viscous weight": (None, {"weight": "viscous"}),
+    "central moments, layered Noble–Torczynski":
+        (None, {"collision": "central_moment", "solid_term": "layered_noble_torczynski"}),
+    "papers: BGK, Noble–Torczynski":
+        (PAPERS, {"collision": "bgk", "solid_term": "noble_torczynski", "weight": "viscous"}),
+    "staircase: BGK, bounce-back": (STAIRS, {"collision": "bgk", "scheme": "bounce_back"}),
+    "TRT, bounce-back": (STAIRS, {"collision": "trt", "scheme": "bounce_back"}),
+    "TRT, interpolated bounce-back": (None, {"collision": "trt", "scheme": "interpolated_bounce_back"}),
+}
+
+
+def sphere_rows(full):
+    """Any of 12, 16, 24, 32 (48) cells a side; the long step is the rule's, the short one a sixth of it."""
+    for label, (family, numerics) in SPHERE_SCHEMES.items():
+        for n in (12, 16, 24, 32) + ((48,) if full else ()):
+            for tau in (0.6, 1.5):
+                if tau < 1.0 and n > (24 if full else 16):
+                    continue
+                h = 1e-3 / n
+                places = [{"obstacle": [{"centre": [5e-4 + x * h, 5e-4 + y * h, 5e-4 + z * h], "diameter": 6.2035049e-4}],
+                           "numerics": {**numerics, "cell": h, "time_step": (tau - 0.5) / 3 * h * h / 1e-6},
+                           "run": {"end_time": 1.0}, "output": {"fields_every": 1.0, "probe_every": 0.1}}
+                          for x, y, z in ((0, 0, 0), (0.5, 0.5, 0.5), (0.23, 0.41, 0.12))]
+                yield label, family, f"D/h {0.62035 * n:.0f}, τ {tau}", places, ()
 
 
 def cylinder_rows(full):
@@ -92,6 +125,8 @@ def couette_torque(run, module):
 CASES_OF = {  # scene, rows, measure, reference, its uncertainty, source
     "array": ("cylinder_array", array_rows, lambda run, m: m.drag(run), 51.526949, 3e-4,
               "drag of a square array, Stokes flow; spectral, Sangani and Acrivos 1982"),
+    "spheres": ("sphere_array", sphere_rows, lambda run, m: m.drag(run), 4.292, 2e-4,
+                "drag of a cubic array of spheres, Stokes flow; Zick and Homsy 1982"),
     "cylinder": ("cylinder_flow", cylinder_rows, lambda run, m: m.coefficients(run)[1][-1], 5.57953523384, 1e-6,
                  "drag of a cylinder at Re 20; Schäfer and Turek 2D-1"),
     "couette": ("taylor_couette", couette_rows, couette_torque, COUETTE, 1e-9, "torque between cylinders; exact"),

@@ -42,6 +42,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
       plan_(plan),
       ranks_(ranks),
       log_(log),
+      first_(first),
       guard_every_(std::max<std::int64_t>(1, kGuardSteps / plan.fluid_steps)),
       start_(std::chrono::steady_clock::now()),
       last_progress_(start_) {
@@ -235,14 +236,16 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
 void Observers::report_progress(std::int64_t interval, const Particles* particles) {
   last_progress_ = std::chrono::steady_clock::now();
   const double wall = seconds_since(start_);
+  const double made = static_cast<double>(intervals_done_ - first_);
   const double done = static_cast<double>(intervals_done_) / static_cast<double>(plan_.intervals);
-  const double updates = static_cast<double>(intervals_done_) * plan_.fluid_steps *
-                         plan_.domain.nx * plan_.domain.ny * plan_.domain.nz;
+  const double left = static_cast<double>(plan_.intervals - intervals_done_) * wall / made;
+  const double updates =
+      made * plan_.fluid_steps * plan_.domain.nx * plan_.domain.ny * plan_.domain.nz;
   log_.progress(
       done, fmt::format("{:>9} | progress | t = {:.4g} s, {:3.0f} %, {:.0f} million "
                         "updates/s, {} left, Ma {:.3f}, max |u| {:.4g} m/s",
                         interval, static_cast<double>(intervals_done_) * plan_.interval(),
-                        100.0 * done, updates / wall * 1e-6, duration_text(wall / done - wall),
+                        100.0 * done, updates / wall * 1e-6, duration_text(left),
                         last_speed_ * std::numbers::sqrt3, last_speed_ * plan_.units.velocity()) +
                 (particles && particles->bonds()
                      ? fmt::format(", bonds {} ({} broken)", particles->bonds()->intact,
@@ -258,7 +261,8 @@ Summary Observers::summary(double wall_seconds) const {
   s.substeps = plan_.substeps;
   s.physical_seconds = static_cast<double>(intervals_done_) * plan_.interval();
   s.wall_seconds = wall_seconds;
-  s.mlups = static_cast<double>(cells) * static_cast<double>(s.steps) / wall_seconds * 1e-6;
+  s.mlups = static_cast<double>(cells) * static_cast<double>(intervals_done_ - first_) *
+            plan_.fluid_steps / wall_seconds * 1e-6;
   s.ma_max = max_speed_ * std::numbers::sqrt3;
   s.ma_paper = max_speed_;
   s.re = plan_.reynolds;

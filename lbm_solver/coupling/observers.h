@@ -81,7 +81,7 @@ class Observers {
   std::optional<ObstacleLoads> obstacles_;
   std::optional<SteadyWatch> steady_;
   std::optional<FieldWriter> fields_;  // of rank 0, like the tables
-  std::int64_t guard_every_, intervals_done_ = 0;
+  std::int64_t first_, guard_every_, intervals_done_ = 0;
   double next_probe_ = 0.0, next_field_ = 0.0;
   double max_speed_ = 0.0, last_speed_ = 0.0;           // of the fluid, lattice units
   double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out

@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Refusal, ThreeDimensionsAgainstTwo) {
   SettlingDisc scene;
-  scene.change_script("dimension        2", "dimension 3");
+  scene.change_script("dimension        ${dimension}", "dimension 3");
   scene.change_script("fix              flat all enforce2d", "");
   expect_end(scene.run("", 1, 30.0), 2,
              {"dimension: fluid 2, solid 3", "lbm | error", "liggghts | error"});
@@ -279,7 +279,8 @@ TEST(Lost, ASilentFluidIsNamedAfterTheTimeOut) {
   scene.change_script("every ${substeps}", "every 10 timeout 1");
   for (const char* name : {"x_lo", "y_lo"})
     scene.change_script(std::string("${") + name + "}", "0");
-  for (const auto& [name, value] : {std::pair{"x_hi", "0.02"},
+  for (const auto& [name, value] : {std::pair{"dimension", "2"},
+                                    {"x_hi", "0.02"},
                                     {"y_hi", "0.06"},
                                     {"z_lo", "-0.5"},
                                     {"z_hi", "0.5"},

@@ -43,10 +43,12 @@ class AosLattice {
         for (int x = 0; x < cells_[0]; ++x) {
           Cell f = now_[index(x, y, z)];
           collision_->collide(f.f);
-          for (int q = 0; q < L::Q; ++q)
-            next_[index(wrap(x + L::c[q][0], cells_[0]), wrap(y + L::c[q][1], cells_[1]),
-                        wrap(z + L::c[q][2], cells_[2]))]
-                .f[q] = f.f[q];
+          for (int q = 0; q < L::Q; ++q) {
+            const int to_x = wrap(x + L::c[q][0], cells_[0]),
+                      to_y = wrap(y + L::c[q][1], cells_[1]);
+            const int to_z = L::D == 3 ? wrap(z + L::c[q][2], cells_[2]) : 0;
+            next_[index(to_x, to_y, to_z)].f[q] = f.f[q];
+          }
         }
     now_.swap(next_);
   }
@@ -55,9 +57,10 @@ class AosLattice {
   struct Cell {
     double f[L::Q] = {};
   };
-  static int wrap(int v, int n) { return v < 0 ? n - 1 : v == n ? 0 : v; }
+  static int wrap(int v, int n) { return v < 0 ? v + n : v >= n ? v - n : v; }
   std::size_t index(int x, int y, int z) const {
-    return (static_cast<std::size_t>(z) * cells_[1] + y) * cells_[0] + x;
+    const std::size_t row = L::D == 3 ? static_cast<std::size_t>(z) * cells_[1] + y : y;
+    return row * cells_[0] + x;
   }
 
   lbm::Cell3 cells_;

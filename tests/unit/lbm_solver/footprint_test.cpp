@@ -51,6 +51,39 @@ TEST(DiscFraction, ExactAreasAddUpToTheDisc) {
   }
 }
 
+TEST(SphereFraction, IsNearDenseSampling) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> part;
+  std::uniform_real_distribution<double> offset(-0.86, 0.86);
+  double squares = 0.0;
+  constexpr int trials = 400, n = 30;
+  for (int t = 0; t < trials; ++t) {
+    Vec3 at(part(random), part(random), part(random));
+    at *= (5.0 + offset(random)) / at.norm();
+    int inside = 0;
+    for (int i = 0; i < n * n * n; ++i) {
+      const Vec3 in_cell(i % n, i / n % n, i / (n * n));
+      inside += (at + (in_cell + Vec3(0.5, 0.5, 0.5)) / n - Vec3(0.5, 0.5, 0.5)).norm() < 5.0;
+    }
+    const double sampled = static_cast<double>(inside) / (n * n * n);
+    const double error = sphere_fraction(at.x(), at.y(), at.z(), 5.0) - sampled;
+    squares += error * error;
+    EXPECT_LT(std::abs(error), 0.06);
+  }
+  EXPECT_LT(std::sqrt(squares / trials), 0.007);  // 0.005 … 0.006 for this rule at D = 10
+}
+
+TEST(SphereFraction, MapAddsUpToTheVolumeInsideAndAcrossACorner) {
+  const Domain box{40, 36, Side::Periodic, Side::Periodic, 32, Side::Periodic};
+  for (const Vec3& centre : {Vec3(20.3, 17.7, 15.1), Vec3(0.4, 35.8, 31.6)}) {
+    Footprint footprint;
+    footprint.update({1, centre, 6.3, Vec3()}, box);
+    double volume = 0.0;
+    for (const double eps : footprint.fractions()) volume += eps;
+    EXPECT_NEAR(volume / (4.0 / 3.0 * std::numbers::pi * 6.3 * 6.3 * 6.3), 1.0, 2e-3);
+  }
+}
+
 TEST(DiscFraction, IsOneInsideAndZeroOutside) {
   EXPECT_EQ(disc_fraction(0.0, 0.0, 5.0), 1.0);
   EXPECT_EQ(disc_fraction(5.0, 5.0, 5.0), 0.0);
