@@ -228,6 +228,9 @@ def main():
     code = run_job(args, out) or study(args, others, out)
     if code:
         print(f"run | stopped with exit code {code}; logs in {out}", file=sys.stderr)
+        if code in (1, 3) and (out / "checkpoint.h5").exists():
+            print("run | its last checkpoint is complete: the same command with --restart goes on from there",
+                  file=sys.stderr)
         return code
     draw(args.scene, out)
     good = judge(out)

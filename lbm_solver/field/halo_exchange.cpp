@@ -80,13 +80,16 @@ void each_run(int axis, Part part, const Populations& f, F&& run) {
 
 template <class Real>
 void HaloExchange::pack(int axis, int high, const Populations& f, const EsotericPull& stream) {
-  std::vector<char>& buffer = out_[high];
-  buffer.clear();
+  const std::vector<Part> list = parts(axis, high, true, f, stream);
+  std::size_t numbers = 0;
+  for (const Part& part : list)
+    each_run(axis, part, f, [&](std::ptrdiff_t, int count) { numbers += count; });
+  out_[high].resize(numbers * sizeof(Real));
+  Real* to = reinterpret_cast<Real*>(out_[high].data());
   const Real* const memory = f.row<Real>(0, 0, 0) - f.start(0, 0, 0);
-  for (const Part& part : parts(axis, high, true, f, stream))
+  for (const Part& part : list)
     each_run(axis, part, f, [&](std::ptrdiff_t at, int count) {
-      const char* from = reinterpret_cast<const char*>(memory + at);
-      buffer.insert(buffer.end(), from, from + count * sizeof(Real));
+      for (int k = 0; k < count; ++k) *to++ = memory[at + k];
     });
 }
 
@@ -96,8 +99,7 @@ void HaloExchange::unpack(int axis, int high, Populations& f, const EsotericPull
   Real* const memory = f.row<Real>(0, 0, 0) - f.start(0, 0, 0);
   for (const Part& part : parts(axis, high, false, f, stream))
     each_run(axis, part, f, [&](std::ptrdiff_t at, int count) {
-      std::copy_n(from, count, memory + at);
-      from += count;
+      for (int k = 0; k < count; ++k) memory[at + k] = *from++;
     });
 }
 

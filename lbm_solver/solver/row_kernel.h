@@ -30,7 +30,7 @@ class RowPrefetch {
  public:
   /// @param ahead  numbers between the row and the one to fetch; 0: none
   RowPrefetch(const EsotericPull::Row<L, Real>& row, int n, std::ptrdiff_t ahead)
-      : row_(row), ahead_(ahead), lines_((n + kLine - 1) / kLine + 1), at_(row.in[0] + ahead) {}
+      : row_(&row), ahead_(ahead), lines_((n + kLine - 1) / kLine + 1), at_(row.in[0] + ahead) {}
 
   /// To be called for every pack of cells swept.
   [[gnu::always_inline]] void fetch(int lines) {
@@ -40,12 +40,12 @@ class RowPrefetch {
       if (++line_ < lines_) continue;
       line_ = 0;
       if (q_ < L::Q - 1) ++q_;
-      at_ = row_.in[q_] + ahead_;
+      at_ = row_->in[q_] + ahead_;
     }
   }
 
  private:
-  const EsotericPull::Row<L, Real>& row_;
+  const EsotericPull::Row<L, Real>* row_;
   std::ptrdiff_t ahead_;
   int lines_, line_ = 0, q_ = 0;
   const Real* at_;
@@ -103,21 +103,25 @@ class RowKernel final : public Kernel {
   using Prefetch = RowPrefetch<L, Real>;
 
   /// Pure fluid from cell x to cell end.
-  [[gnu::always_inline]] void sweep_row(const Row& row, int x, int end, Prefetch& prefetch) const {
+  [[gnu::always_inline]] void sweep_row(const Row& row, int x, int end, Prefetch& shared) const {
+    Prefetch prefetch = shared;  // in registers
     for (; x + kWidth <= end; x += kWidth) {
       if constexpr (L::D == 3) prefetch.fetch(L::Q + 3);
       fluid(row, x, AllLanes<V>());
     }
     if (x < end) fluid(row, x, FirstLanes<V>(end - x));
+    shared = prefetch;
   }
 
   /// Runs of pure fluid between the covered blocks: the first loop never asks about solids.
   void sweep_row_with_solids(const Row& row, int y, int z, int n, CoverMap& cover,
                              Prefetch& prefetch) const {
-    for (int b = 0; b < cover.blocks_per_row(); ++b) {
-      const int next = cover.next_covered(y, z, b);
-      sweep_row(row, b * kPackWidth, std::min(next * kPackWidth, n), prefetch);
-      if (next == cover.blocks_per_row()) return;
+    const int blocks = cover.blocks_per_row();
+    int next = cover.next_covered(y, z, 0);
+    if (next == blocks) return sweep_row(row, 0, n, prefetch);
+    for (int b = 0; b < blocks; next = cover.next_covered(y, z, b)) {
+      if (next > b) sweep_row(row, b * kPackWidth, std::min(next * kPackWidth, n), prefetch);
+      if (next == blocks) return;
       const int x = next * kPackWidth;
       if constexpr (L::D == 3) prefetch.fetch(L::Q + 3);
       CoverBlock<L::D>& block = *cover.block<L::D>(y, z, next);
@@ -125,7 +129,7 @@ class RowKernel final : public Kernel {
         covered(row, x, block, AllLanes<Pack>());
       else
         covered(row, x, block, FirstLanes<Pack>(n - x));
-      b = next;
+      b = next + 1;
     }
   }
 

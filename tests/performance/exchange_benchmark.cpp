@@ -1,30 +1,37 @@
 // SPDX-License-Identifier: MIT
-/// `mpirun -np 2 exchange_benchmark`: microseconds that an exchange takes, states there and loads
-/// back, without any physics, by number of particles.
+/// `mpirun -np 2 exchange_benchmark` (or any even number of ranks, half of them fluid):
+/// microseconds that an exchange takes, states there and loads back, without any physics, by number
+/// of particles, and what travels: each particle to the slabs of the box that it touches.
 #include <fmt/format.h>
 
 #include <chrono>
-#include <numeric>
+#include <random>
 
 #include "protocol/mpi_channel.h"
+#include "protocol/routing.h"
 #include "protocol/session.h"
 
 namespace {
 
 using namespace protocol;
 
-constexpr double kTimeout = 60.0;
+constexpr double kTimeout = 60.0, kRadius = 0.005;
 
-Hello hello(Role role) {
+/// A fluid rank holds a slab of the unit cube.
+Hello hello(Role role, int rank, int ranks) {
   Hello h;
   h.role = role;
+  h.dimension = 3;
   h.box_hi = h.subdomain_hi = {1.0, 1.0, 1.0};
+  h.subdomain_lo[2] = static_cast<double>(rank) / ranks;
+  h.subdomain_hi[2] = static_cast<double>(rank + 1) / ranks;
+  h.reach = 0.4 * kRadius;
   h.step = 1.0;
   return h;
 }
 
-void fluid(Channel& channel, int intervals) {
-  FluidSession session(channel, hello(Role::Fluid), kTimeout);
+void fluid(Channel& channel, int rank, int ranks, int intervals) {
+  FluidSession session(channel, hello(Role::Fluid, rank, ranks), kTimeout);
   session.agree();
   std::vector<Load> loads;
   for (int k = 0; k < intervals; ++k) {
@@ -37,14 +44,21 @@ void fluid(Channel& channel, int intervals) {
   session.receive();
 }
 
-void solid(Channel& channel, int particles, int intervals) {
+void solid(Channel& channel, int rank, int ranks, int particles, int intervals) {
   SolidSession session(channel, kTimeout);
-  session.agree(hello(Role::Solid));
-  std::vector<State> states(particles);
-  std::vector<Shape> shapes(particles);
-  for (int i = 0; i < particles; ++i) {
-    states[i] = {i, {0.5, 0.5, 0.0}, {}, {}};
-    shapes[i] = {i, 0.1, 1.0, 1.0, 1};
+  session.agree(hello(Role::Solid, rank, ranks));
+  std::mt19937 random(rank);
+  std::uniform_real_distribution<double> at(0.0, 1.0);
+  const int mine = (particles + ranks - 1 - rank) / ranks;
+  std::vector<State> states(mine);
+  std::vector<Shape> shapes(mine);
+  double copies = 0.0;
+  for (int i = 0; i < mine; ++i) {
+    const std::int64_t id = rank + static_cast<std::int64_t>(i) * ranks;
+    states[i] = {id, {at(random), at(random), at(random)}, {}, {}};
+    shapes[i] = {id, kRadius, 1.0, 1.0, 1};
+    for (int f = 0; f < ranks; ++f)
+      copies += touches(hello(Role::Fluid, f, ranks), states[i].x, kRadius) ? 1.0 : 0.0;
   }
   const int warm = intervals / 5;
   auto start = std::chrono::steady_clock::now();
@@ -54,8 +68,11 @@ void solid(Channel& channel, int particles, int intervals) {
   }
   const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - start;
   session.exchange({intervals, 0.0, kLast}, states, shapes);
-  fmt::print("{:>8} particles {:>10.1f} µs an exchange, {:.0f} bytes\n", particles,
-             spent.count() / (intervals - warm), particles * double(sizeof(State) + sizeof(Load)));
+  if (rank == 0)
+    fmt::print(
+        "{:>8} particles {:>10.1f} µs an exchange; a solid rank: {} messages, {:.0f} bytes\n",
+        particles, spent.count() / (intervals - warm), 2 * ranks,
+        copies * static_cast<double>(sizeof(State) + sizeof(Load)));
 }
 
 }  // namespace
@@ -65,20 +82,22 @@ int main(int argc, char** argv) {
   int rank = 0, size = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
-  if (size != 2) {
-    if (rank == 0) fmt::print(stderr, "exchange_benchmark | error | start: mpirun -np 2\n");
+  if (size % 2 != 0) {
+    if (rank == 0)
+      fmt::print(stderr, "exchange_benchmark | error | start an even number: mpirun -np 2\n");
     MPI_Finalize();
     return 2;
   }
-  const Role role = rank == 0 ? Role::Fluid : Role::Solid;
+  const int ranks = size / 2;
+  const Role role = rank < ranks ? Role::Fluid : Role::Solid;
   for (const auto& [particles, intervals] :
        {std::pair{1, 20000}, {500, 20000}, {10000, 1000}, {100000, 100}}) {
     World world = connect(role);
     const auto channel = make_mpi_channel(world, role);
     if (role == Role::Fluid)
-      fluid(*channel, intervals);
+      fluid(*channel, rank, ranks, intervals);
     else
-      solid(*channel, particles, intervals);
+      solid(*channel, rank - ranks, ranks, particles, intervals);
     disconnect(world);
   }
   MPI_Finalize();
