@@ -216,8 +216,10 @@ def said(factors):
 
 def draw(case, rows):
     figure, axes = plt.subplots(figsize=(7.6, 4.6))
-    colors = {label: f"C{i % 10}" for i, label in enumerate(SCHEMES)}
-    for label in SCHEMES:
+    labels = list(dict.fromkeys([*(s for s in SCHEMES if any(r["scheme"] == s for r in rows)),
+                                 *(r["scheme"] for r in rows)]))
+    colors = {label: plt.cm.tab20(2 * i % 20 + 2 * i // 20) for i, label in enumerate(labels)}
+    for label in labels:
         mine = [r for r in rows if r["scheme"] == label]
         good = [r for r in mine if r["status"] == "ok"]
         if good:

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, read_table, result, studies
+from pictures import Run, draw_errors, draw_speed, read_table, result, studies
 
 DRAG = 51.526949  # F/(mu U) at c = 0.2
 SOURCE = "spectral solution of the Stokes flow; Sangani and Acrivos 1982 within 0.03 %"
@@ -40,16 +40,8 @@ def main():
     left.add_patch(plt.Circle((0.5115, 0.5205), 0.2523131, color="white"))
     left.set_xlabel("x [mm]")
     figure.colorbar(image, ax=left, label="speed [m/s]")
-    rows = {"default": run, "default, 20 cells": others.get("set-fine")}
-    rows.update({name.removeprefix("variant-").replace("_", " "): r for name, r in others.items() if name != "set-fine"})
-    rows = {name: 100 * (drag(r) / DRAG - 1) for name, r in rows.items() if r}
-    right.barh(list(rows), list(rows.values()), color="tab:blue")
-    for i, error in enumerate(rows.values()):
-        right.text(max(error, 0) + 0.5, i, f"{error:+.1f} %", va="center")
-    right.axvline(0, color="0.3", linewidth=0.8)
-    right.set_xlim(min(-25, min(rows.values()) - 3), max(rows.values()) + 10)
-    right.set_xlabel("error of the drag [%], τ = 1.5, 10 cells across")
-    right.invert_yaxis()
+    draw_errors(right, run, others, lambda r: 100 * (drag(r) / DRAG - 1),
+                "error of the drag [%], τ = 1.5, 10 cells across")
     figure.tight_layout()
     run.save(figure, "array.png")
 

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_slice, read_table, result, studies
+from pictures import Run, draw_errors, draw_slice, read_table, result, studies
 
 DRAG = 4.292  # K = F/(6 pi mu a U) at c = 0.125
 SOURCE = "Zick and Homsy 1982"
@@ -39,16 +39,8 @@ def main():
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.2), width_ratios=(1, 1.5))
     image = draw_slice(left, run, run.frames()[-1][1], "y", length_unit=1e-3)
     figure.colorbar(image, ax=left, label="speed [m/s]")
-    rows = {"default": run, "default, 20 cells": others.get("set-fine")}
-    rows.update({name.removeprefix("variant-").replace("_", " "): r for name, r in others.items() if name != "set-fine"})
-    rows = {name: 100 * (drag(r) / DRAG - 1) for name, r in rows.items() if r}
-    right.barh(list(rows), list(rows.values()), color="tab:blue")
-    for i, error in enumerate(rows.values()):
-        right.text(max(error, 0) + 0.2, i, f"{error:+.2f} %", va="center")
-    right.axvline(0, color="0.3", linewidth=0.8)
-    right.set_xlim(min(-10, min(rows.values()) - 3), max(rows.values()) + 5)
-    right.set_xlabel("error of the drag [%], τ = 1.5, 10 cells across")
-    right.invert_yaxis()
+    draw_errors(right, run, others, lambda r: 100 * (drag(r) / DRAG - 1),
+                "error of the drag [%], τ = 1.5, 10 cells across")
     figure.tight_layout()
     run.save(figure, "array.png")
 

@@ -25,9 +25,10 @@ inline constexpr double kVirtualMass = 2.0;
 ///
 /// The force that a covered region receives from the lattice includes the change of momentum of the
 /// fluid inside it, m_f dU/dt. The solid integrates its own mass only, so that part is given back:
-///   F = mean(F_lattice) + m_f (U_k - U_{k-1})/T + buoyancy,   T = mean(T_lattice) + I_f (ω_k -
-///   ω_{k-1})/T, disc: m_f = rho_f pi R² depth, I_f = ½ m_f R²,   sphere: m_f = 4/3 rho_f pi R³,
-///   I_f = 2/5 m_f R²,
+///   F = mean(F_lattice) + m_f (U_k - U_{k-1})/T + buoyancy,
+///   T = mean(T_lattice) + I_f (ω_k - ω_{k-1})/T,
+///   disc:   m_f = rho_f pi R² depth,  I_f = ½ m_f R²,
+///   sphere: m_f = 4/3 rho_f pi R³,    I_f = 2/5 m_f R²,
 /// with R the radius that the fluid sees (`hydraulic_ratio` times the particle's).
 ///
 /// A light particle answers a change of load with a large acceleration, which the fluid answers a

@@ -128,6 +128,21 @@ def draw_slice(axes, run, name, normal, at=None, vmax=None, length_unit=1e-2, qu
     return image
 
 
+def draw_errors(axes, run, others, error, label):
+    """Bars of error(run) [%] of a run and the comparison runs beside it, named after their overlays."""
+    rows = {"default": run, "default, 20 cells": others.get("set-fine")}
+    rows.update({name.removeprefix("variant-").replace("_", " "): r for name, r in others.items() if name != "set-fine"})
+    rows = {name: error(r) for name, r in rows.items() if r}
+    axes.barh(list(rows), list(rows.values()), color="tab:blue")
+    room = 0.15 * max(10.0, max(rows.values()) - min(rows.values()))
+    for i, value in enumerate(rows.values()):
+        axes.text(max(value, 0) + 0.1 * room, i, f"{value:+.1f} %", va="center")
+    axes.axvline(0, color="0.3", linewidth=0.8)
+    axes.set_xlim(min(0, min(rows.values())) - room, max(0, max(rows.values())) + 1.6 * room)
+    axes.set_xlabel(label)
+    axes.invert_yaxis()
+
+
 def draw_bonds(axes, frame, length_unit=1e-2):
     """Lines between bonded discs: intact green, broken by tension red, by shear blue."""
     if "bond_state" not in frame:
