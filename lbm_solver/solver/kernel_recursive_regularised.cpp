@@ -4,8 +4,14 @@
 
 namespace lbm {
 
+/// In double precision only: it is the slowest to compile, and central moments serve the same flows.
 KernelRows recursive_regularised_rows() {
-  return rows_of<RecursiveRegularised>("recursive_regularised");
+  const char* name = "recursive_regularised";
+  KernelRows rows;
+  add_lattice<RecursiveRegularised, D2Q9, double>(rows, name);
+  add_lattice<RecursiveRegularised, D3Q19, double>(rows, name);
+  add_lattice<RecursiveRegularised, D3Q27, double>(rows, name);
+  return rows;
 }
 
 }  // namespace lbm

@@ -240,6 +240,10 @@ void choose_kernel(const Scene& s, Plan& plan) {
   }
   k.lattice = n.lattice != "auto" ? n.lattice : s.box.dimension == 2 ? "D2Q9" : "D3Q19";
   k.precision = n.single ? Precision::Single : Precision::Double;
+  if (n.single && k.collision == "recursive_regularised")
+    throw InputError(s.file + ": numerics.collision",
+                     "= \"recursive_regularised\" is there in double precision only",
+                     "take central_moment, or precision = \"double\"");
   k.turbulence = n.smagorinsky > 0.0 ? "smagorinsky" : "none";
   k.force = s.fluid.body_force.norm() > 0.0;
   choose_solids(s, plan);

@@ -229,7 +229,8 @@ void register_setting(const Setting& on, int threads) {
     one_by_one.one_by_one = true;
     add_kernel(one_by_one, {.collision = "trt"});
     for (const std::string& collision : known_collisions())
-      add_kernel(on.entry(collision, t), {.collision = collision});
+      if (on.precision == Precision::Double || collision != "recursive_regularised")
+        add_kernel(on.entry(collision, t), {.collision = collision});
   }
   for (const char* collision : {"bgk", "trt"})
     add_kernel(

@@ -115,7 +115,8 @@ std::vector<KernelChoice> rows_of(const std::string& lattice, Precision precisio
         {"none"}, {"noble_torczynski", WeightRule::Fraction}, {"holdych", WeightRule::Balanced}};
     for (const std::string& term : known_solid_terms()) all_solids.push_back({term});
   }
-  for (const std::string& collision : known_collisions())
+  for (const std::string& collision : known_collisions()) {
+    if (collision == "recursive_regularised" && precision == Precision::Single) continue;
     for (const char* turbulence : {"none", "smagorinsky"})
       for (const bool force : {false, true})
         for (const auto& [term, weight] : all_solids)
@@ -127,6 +128,7 @@ std::vector<KernelChoice> rows_of(const std::string& lattice, Precision precisio
                           weight,
                           lattice,
                           precision});
+  }
   return rows;
 }
 
