@@ -4,7 +4,8 @@
 
 namespace lbm {
 
-/// In double precision only: it is the slowest to compile, and central moments serve the same flows.
+/// In double precision only: it is the slowest to compile, and central moments serve the same
+/// flows.
 KernelRows recursive_regularised_rows() {
   const char* name = "recursive_regularised";
   KernelRows rows;
