@@ -36,7 +36,7 @@ def main():
         line, = speed.plot(probe["time"], probe["vz"], label=name)
         speed.axhline(-reference, color=line.get_color(), linewidth=0.8, linestyle=":")
         height.plot(probe["time"], (probe["z"] / r.parameters["diameter"] - 0.5), label=name)
-    speed.set(xlabel="time [s]", ylabel="velocity [m/s] (dotted: measured maximum)")
+    speed.set(xlabel="time [s]", ylabel="velocity [m/s], dotted: measured")
     height.set(xlabel="time [s]", ylabel="gap to the floor / diameter")
     speed.legend()
     run.save(figure, "history.png")
