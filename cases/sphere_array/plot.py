@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_errors, draw_slice, read_table, result, studies
+from pictures import Run, drag_results, draw_errors, draw_slice, read_table, studies
 
 DRAG = 4.292  # K = F/(6 pi mu a U) at c = 0.125
 SOURCE = "Zick and Homsy 1982"
@@ -19,23 +19,12 @@ def drag(run):
     return table["fx"][-1] / (6 * np.pi * viscosity * radius * flux)
 
 
-def judged(run, others):
-    p = run.parameters
-    fx = read_table(run.folder / "obstacles.csv")["fx"][-1]
-    drive = p["density"] * 1e-3 * p["box_x"] ** 3
-    # 3 % and 1.5 %: what is asked of the default scheme at 10 and 20 cells
-    results = [result("drag", drag(run), "1", DRAG, SOURCE, 0.03),
-               result("force over driving force", fx / drive, "1", 1.0, "momentum balance; still "
-                      "changing by 1e-7 a turnover", 1e-4)]
-    if "set-fine" in others:
-        results.append(result("drag at 20 cells", drag(others["set-fine"]), "1", DRAG, SOURCE, 0.015))
-    return results
-
-
 def main():
     run = Run(sys.argv[1])
     others = studies(run)
-    run.write_results(judged(run, others))
+    p = run.parameters
+    drive = p["density"] * 1e-3 * p["box_x"] ** 3
+    run.write_results(drag_results(run, others, drag, DRAG, SOURCE, drive))
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.2), width_ratios=(1, 1.5))
     image = draw_slice(left, run, run.frames()[-1][1], "y", length_unit=1e-3)
     figure.colorbar(image, ax=left, label="speed [m/s]")

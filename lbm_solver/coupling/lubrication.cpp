@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "lbm_solver/field/decomposition.h"
+
 namespace lbm {
 namespace {
 
@@ -39,16 +41,6 @@ std::vector<Image> images(std::span<const Body> bodies, const Domain& domain, do
   return all;
 }
 
-/// A place belongs to the rank that holds it, or the cell of the box nearest to it.
-bool holds(const Block& cells, const Domain& domain, const Vec3& place) {
-  Cell3 cell{0, 0, 0};
-  for (int a = 0; a < domain.dimension(); ++a) {
-    const int n = domain.cells()[a], at = static_cast<int>(std::floor(place[a]));
-    cell[a] = domain.sides()[a] == Side::Periodic ? ((at % n) + n) % n : std::clamp(at, 0, n - 1);
-  }
-  return cells.holds(cell);
-}
-
 }  // namespace
 
 double Lubrication::resistance(double gap, double radius, bool spheres) const {
@@ -78,7 +70,7 @@ void Lubrication::add_walls(const Body& b, double mass, const Domain& domain, co
       const double gap = sign * (b.centre[k] - wall) - b.radius;
       Vec3 middle = b.centre;
       middle[k] = wall + 0.5 * sign * gap;
-      if (gap < range && holds(cells, domain, middle))
+      if (gap < range && holds(domain, cells, middle))
         load.force[k] += sign * force(gap, b.radius, -sign * b.velocity[k], mass, spheres);
     }
   }
@@ -109,7 +101,7 @@ void Lubrication::add(std::span<const Body> bodies, std::span<const double> mass
       const double inverse = 1.0 / masses[all[i].body] + 1.0 / masses[all[j].body];
       if (gap >= range || distance == 0.0 || inverse == 0.0) continue;
       const Vec3 normal = apart / distance;
-      if (!holds(cells, domain, all[i].centre + (a.radius + 0.5 * gap) * normal)) continue;
+      if (!holds(domain, cells, all[i].centre + (a.radius + 0.5 * gap) * normal)) continue;
       const double approach = (a.velocity - b.velocity).dot(normal);
       const double radius = a.radius * b.radius / (a.radius + b.radius);
       const Vec3 push = force(gap, radius, approach, 1.0 / inverse, spheres) * normal;

@@ -89,18 +89,9 @@ double Particles::radius(std::size_t i) const {
   return particles_[i].shape.radius * hydraulic_ratio_[std::min(type, hydraulic_ratio_.size()) - 1];
 }
 
-/// This rank holds the centre, or the cell of the box that is nearest to it.
 bool Particles::at_home(std::size_t i) const {
-  if (ranks_.alone()) return true;
   const Vec3 centre = units_.to_lattice_position(to_vec3(particles_[i].state.x));
-  const Domain& domain = ranks_.domain();
-  Cell3 cell{0, 0, 0};
-  for (int a = 0; a < domain.dimension(); ++a) {
-    const int n = domain.cells()[a];
-    const auto at = static_cast<int>(std::floor(centre[a]));
-    cell[a] = domain.sides()[a] == Side::Periodic ? ((at % n) + n) % n : std::clamp(at, 0, n - 1);
-  }
-  return ranks_.cells().holds(cell);
+  return ranks_.alone() || holds(ranks_.domain(), ranks_.cells(), centre);
 }
 
 std::vector<double> Particles::masses() const {

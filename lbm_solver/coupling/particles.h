@@ -105,7 +105,7 @@ class Particles {
   double radius(std::size_t i) const;          // that the fluid sees [m]
   double displaced_mass(std::size_t i) const;  // of fluid [kg]
   double inner_inertia(std::size_t i) const;   // per displaced mass [m²]
-  bool at_home(std::size_t i) const;
+  bool at_home(std::size_t i) const;           // this rank holds the centre
   protocol::Load hydrodynamic(std::size_t i, int steps) const;
   double virtual_mass(std::size_t i) const;  // over the displaced mass
   void add_virtual_mass(std::size_t i, protocol::Load& load) const;

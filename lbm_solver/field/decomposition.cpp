@@ -2,6 +2,7 @@
 #include "lbm_solver/field/decomposition.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -162,6 +163,15 @@ void Decomposition::broadcast(std::vector<double>& values) const {
   MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, comm_);
   values.resize(n);
   MPI_Bcast(values.data(), static_cast<int>(n), MPI_DOUBLE, 0, comm_);
+}
+
+bool holds(const Domain& domain, const Block& cells, const Vec3& place) {
+  Cell3 cell{0, 0, 0};
+  for (int a = 0; a < domain.dimension(); ++a) {
+    const int n = domain.cells()[a], at = static_cast<int>(std::floor(place[a]));
+    cell[a] = domain.sides()[a] == Side::Periodic ? ((at % n) + n) % n : std::clamp(at, 0, n - 1);
+  }
+  return cells.holds(cell);
 }
 
 Cell3 choose_grid(const Domain& domain, int ranks) {

@@ -60,6 +60,10 @@ class Decomposition {
   Block cells_;
 };
 
+/// Whether a place of the box, or the cell of the box that is nearest to it, is among these cells:
+/// of the blocks of a grid exactly one says yes.
+bool holds(const Domain& domain, const Block& cells, const Vec3& place);
+
 /// The grid of `ranks` blocks whose surface is smallest; of equals the one that cuts z, then y:
 /// rows along x stay whole, and only layers across the last axis can be exchanged during a sweep.
 Cell3 choose_grid(const Domain& domain, int ranks);

@@ -106,11 +106,6 @@ class Fluid {
   void restore(const std::map<std::string, std::vector<double>>& state);
 
   std::size_t bytes() const { return f_.bytes() + (cover_ ? cover_->bytes() : 0); }
-  /// Messages and bytes that this rank sends to others of the fluid in a step.
-  std::pair<std::size_t, std::size_t> traffic() const {
-    return halo_ ? std::pair{halo_->messages(), halo_->bytes()}
-                 : std::pair<std::size_t, std::size_t>{};
-  }
 
  private:
   void sweep_and_exchange(EsotericPull& stream);

@@ -28,9 +28,11 @@ void measure(int n, int axis, int ranks) {
   }
   const double spent = (MPI_Wtime() - start) / count;
   if (decomposition.rank() == 0)
-    fmt::print("{:>4}³ cells a rank, cut across {}: {:>8.1f} µs, {} bytes, {:.2f} ns a byte\n", n,
-               "xyz"[axis], 1e6 * spent, halo.bytes(),
-               1e9 * spent / static_cast<double>(halo.bytes()));
+    fmt::print(
+        "{:>4}³ cells a rank, cut across {}: {:>8.1f} µs, {} messages, {} bytes, {:.2f} ns a "
+        "byte\n",
+        n, "xyz"[axis], 1e6 * spent, halo.messages(), halo.bytes(),
+        1e9 * spent / static_cast<double>(halo.bytes()));
 }
 
 }  // namespace
