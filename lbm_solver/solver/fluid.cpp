@@ -166,7 +166,7 @@ Fluid::Cell Fluid::at(const Vec3& place) const {
 }
 
 void Fluid::row(int y, int z, std::span<double> rho, const RowVelocity& u) {
-  kernel_->macroscopic(f_, stream_, y, z, half_force_, rho, u);
+  row_moments(f_, stream_, y, z, half_force_, rho, u);
 }
 
 Fluid::Extremes Fluid::extremes() {

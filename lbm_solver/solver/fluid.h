@@ -11,6 +11,7 @@
 #include "lbm_solver/field/halo_exchange.h"
 #include "lbm_solver/immersed/body_scheme.h"
 #include "lbm_solver/solver/kernel.h"
+#include "lbm_solver/solver/row_moments.h"
 
 namespace lbm {
 

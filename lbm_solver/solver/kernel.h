@@ -24,9 +24,6 @@ struct Rows {
   }
 };
 
-/// Velocity components along a row, [nx] each; z is left alone in two dimensions.
-using RowVelocity = std::array<std::span<double>, 3>;
-
 /// One sweep of the lattice: stream and collide cells. The only virtual call of a time step.
 class Kernel {
  public:
@@ -35,11 +32,6 @@ class Kernel {
   /// waiting for the others. @param cover  covered cells; null where the scene has no solids
   virtual void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover,
                      const Rows& rows) const = 0;
-
-  /// Density and velocity of a row of what has arrived. @param half_force  half the body force
-  virtual void macroscopic(Populations& f, const EsotericPull& stream, int y, int z,
-                           const Vec3& half_force, std::span<double> rho,
-                           const RowVelocity& u) const = 0;
 };
 
 /// What a scene asks of the kernel; a row of the kernel table.

@@ -10,7 +10,7 @@ namespace lbm {
 struct KernelTableRow {
   std::string collision, lattice, turbulence;
   Precision precision;
-  bool force, solids;
+  bool force;
   std::unique_ptr<Kernel> (*make)(const KernelChoice&);
 };
 using KernelRows = std::vector<KernelTableRow>;
@@ -21,30 +21,27 @@ KernelRows trt_rows();
 KernelRows central_moment_rows();
 KernelRows recursive_regularised_rows();
 
-template <class Collision, class Solids, class Real>
+template <class Collision, class Real>
 std::unique_ptr<Kernel> make_row_kernel(const KernelChoice& c) {
-  return std::make_unique<RowKernel<Collision, Solids, Real>>(c);
+  return std::make_unique<RowKernel<Collision, Real>>(c);
 }
 
-/// The rows of one operator with one turbulence model and force.
+/// The row of one operator with one turbulence model and force.
 template <class Collision, class Real>
-void add_rows(KernelRows& rows, const char* name, const char* turbulence, bool force) {
+void add_row(KernelRows& rows, const char* name, const char* turbulence, bool force) {
   constexpr Precision precision =
       std::is_same_v<Real, double> ? Precision::Double : Precision::Single;
-  const char* lattice = Collision::Set::name;
-  rows.push_back({name, lattice, turbulence, precision, force, false,
-                  make_row_kernel<Collision, NoSolids, Real>});
-  rows.push_back({name, lattice, turbulence, precision, force, true,
-                  make_row_kernel<Collision, CoveredCells, Real>});
+  rows.push_back(
+      {name, Collision::Set::name, turbulence, precision, force, make_row_kernel<Collision, Real>});
 }
 
 /// All rows of one lattice and precision.
 template <template <class, class, class> class Collision, class L, class Real>
 void add_lattice(KernelRows& rows, const char* name) {
-  add_rows<Collision<L, Laminar, NoForce<L>>, Real>(rows, name, "none", false);
-  add_rows<Collision<L, Laminar, GuoForce<L>>, Real>(rows, name, "none", true);
-  add_rows<Collision<L, Smagorinsky, NoForce<L>>, Real>(rows, name, "smagorinsky", false);
-  add_rows<Collision<L, Smagorinsky, GuoForce<L>>, Real>(rows, name, "smagorinsky", true);
+  add_row<Collision<L, Laminar, NoForce<L>>, Real>(rows, name, "none", false);
+  add_row<Collision<L, Laminar, GuoForce<L>>, Real>(rows, name, "none", true);
+  add_row<Collision<L, Smagorinsky, NoForce<L>>, Real>(rows, name, "smagorinsky", false);
+  add_row<Collision<L, Smagorinsky, GuoForce<L>>, Real>(rows, name, "smagorinsky", true);
 }
 
 /// All rows of an operator that is a template on lattice, turbulence model and force.

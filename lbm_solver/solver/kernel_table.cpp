@@ -20,17 +20,16 @@ const KernelRows& table() {
 }
 
 std::string text(const KernelTableRow& r) {
-  return fmt::format("{} {} {} + {} + {} + {}", r.lattice,
+  return fmt::format("{} {} {} + {} + {}", r.lattice,
                      r.precision == Precision::Double ? "double" : "single", r.collision,
                      r.turbulence == "none" ? "laminar" : r.turbulence,
-                     r.force ? "force" : "no force", r.solids ? "solids" : "no solids");
+                     r.force ? "force" : "no force");
 }
 
 }  // namespace
 
 std::unique_ptr<Kernel> make_kernel(const KernelChoice& c) {
-  const KernelTableRow wanted{
-      c.collision, c.lattice, c.turbulence, c.precision, c.force, c.solid_term != "none", nullptr};
+  const KernelTableRow wanted{c.collision, c.lattice, c.turbulence, c.precision, c.force, nullptr};
   std::string known;
   for (const KernelTableRow& row : table()) {
     if (text(row) == text(wanted)) return row.make(c);
