@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/boundary/patch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,7 @@ namespace lbm {
 namespace {
 
 constexpr double kCourant = 0.57735026918962576;  // c_s: cells that sound crosses in a step
+constexpr double kInflow = 0.02;  // speed from which an outflow that runs backwards is a reservoir
 
 /// The axes along a side.
 std::array<int, 2> axes_along(SideName side) {
@@ -81,19 +83,19 @@ VelocityPatch::VelocityPatch(const Lattice& lattice, std::vector<Link> links, co
 
 namespace {
 
-Population arriving(Populations& f, const EsotericPull& stream, int q, const Cell3& cell) {
-  return stream.arriving(f, q, cell[0], cell[1], cell[2]);
+Population arriving(const Patch::Sweep& s, int q, const Cell3& cell) {
+  return s.stream.arriving(s.f, q, cell[0], cell[1], cell[2]);
 }
-CellMoments moments_at(const Populations& f, const EsotericPull& stream, const Cell3& cell) {
-  return cell_moments(f, stream, cell[0], cell[1], cell[2]);
+CellMoments moments_at(const Patch::Sweep& s, const Cell3& cell) {
+  return cell_moments(s.f, s.stream, cell[0], cell[1], cell[2]);
 }
 
 }  // namespace
 
-void VelocityPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
-  const double factor = in_time_.factor(step);
+void VelocityPatch::apply(const Sweep& sweep) {
+  const double factor = in_time_.factor(sweep.step);
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    const Population population = arriving(f, stream, links_[i].q, links_[i].cell);
+    const Population population = arriving(sweep, links_[i].q, links_[i].cell);
     replace(population, population + factor * gain_[i]);
   }
 }
@@ -104,18 +106,20 @@ DensityPatch::DensityPatch(std::vector<Link> links, SideName side, double drho,
   inward_[axis_of(side)] = is_high(side) ? -1 : 1;
 }
 
-void PressurePatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
-  const double target = drho(step);
-  const Lattice& l = f.lattice();
-  for (const Link& link : links_) {
-    const CellMoments in = moments_at(f, stream, inner(link));
-    const Vec3 u = in.velocity();
-    const double at_cell = (2.0 * target + in.drho) / 3.0;
-    const double per_density =
-        l.w[link.q] * (1.0 + 3.0 * velocity_of(l, link.q).dot(u) + square_terms(l, link.q, u));
-    replace(arriving(f, stream, link.q, link.cell),
-            arriving(f, stream, link.q, inner(link)) + (at_cell - in.drho) * per_density);
-  }
+double DensityPatch::at_density(const Sweep& sweep, const Link& link, double drho) const {
+  const Lattice& l = sweep.f.lattice();
+  const CellMoments in = moments_at(sweep, inner(link));
+  const Vec3 u = in.velocity();
+  const double at_cell = (2.0 * drho + in.drho) / 3.0;
+  const double per_density =
+      l.w[link.q] * (1.0 + 3.0 * velocity_of(l, link.q).dot(u) + square_terms(l, link.q, u));
+  return arriving(sweep, link.q, inner(link)) + (at_cell - in.drho) * per_density;
+}
+
+void PressurePatch::apply(const Sweep& sweep) {
+  const double target = drho(sweep.step);
+  for (const Link& link : links_)
+    replace(arriving(sweep, link.q, link.cell), at_density(sweep, link, target));
 }
 
 OutflowPatch::OutflowPatch(std::vector<Link> links, SideName side, double drho, double relax)
@@ -123,24 +127,38 @@ OutflowPatch::OutflowPatch(std::vector<Link> links, SideName side, double drho, 
       relax_(relax),
       memory_(links_.size(), 0.0) {}
 
-void OutflowPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
-  const double target = drho(step);
+double OutflowPatch::held_part(const Sweep& sweep, const Link& link, double inflow) const {
+  double held = std::min(1.0, inflow / kInflow);
+  if (!sweep.cover) return held;
+  for (const Cell3& c : {link.cell, inner(link)})
+    held = std::max(held, sweep.cover->solid_fraction(c[0], c[1], c[2]));
+  return held;
+}
+
+void OutflowPatch::apply(const Sweep& sweep) {
+  const double target = drho(sweep.step);
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
-    const double inside = arriving(f, stream, link.q, inner(link));
+    const double inside = arriving(sweep, link.q, inner(link));
     const double carried = (memory_[i] + kCourant * inside) / (1.0 + kCourant);
-    const double excess = target - moments_at(f, stream, inner(link)).drho;
-    memory_[i] = carried + relax_ * f.lattice().w[link.q] * excess;
-    replace(arriving(f, stream, link.q, link.cell), memory_[i]);
+    const CellMoments in = moments_at(sweep, inner(link));
+    memory_[i] = carried + relax_ * sweep.f.lattice().w[link.q] * (target - in.drho);
+    const double inflow = std::max(0.0, in.velocity().dot(inward()));
+    const double held = held_part(sweep, link, inflow);
+    if (held > 0.0) {
+      const double from_rest = target - 1.5 * inflow * inflow;
+      memory_[i] += held * (at_density(sweep, link, from_rest) - memory_[i]);
+    }
+    replace(arriving(sweep, link.q, link.cell), memory_[i]);
   }
 }
 
-void PressureJumpPatch::apply(Populations& f, const EsotericPull& stream, std::int64_t step) {
-  const double jump = drho(step);
-  const Lattice& l = f.lattice();
+void PressureJumpPatch::apply(const Sweep& sweep) {
+  const double jump = drho(sweep.step);
+  const Lattice& l = sweep.f.lattice();
   for (const Link& link : links_) {
-    const Vec3 u = moments_at(f, stream, inner(link)).velocity();
-    const Population population = arriving(f, stream, link.q, link.cell);
+    const Vec3 u = moments_at(sweep, inner(link)).velocity();
+    const Population population = arriving(sweep, link.q, link.cell);
     replace(population, population + l.w[link.q] * jump * (1.0 + square_terms(l, link.q, u)));
   }
 }

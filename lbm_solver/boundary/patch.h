@@ -7,6 +7,7 @@
 
 #include "lbm_solver/base/side.h"
 #include "lbm_solver/field/cell_pass.h"
+#include "lbm_solver/immersed/cover_map.h"
 
 namespace lbm {
 
@@ -43,8 +44,14 @@ class Patch {
   explicit Patch(std::vector<Link> links) : links_(std::move(links)) {}
   virtual ~Patch() = default;
 
-  /// @param step  number of the step just made, for boundaries that change in time
-  virtual void apply(Populations& f, const EsotericPull& stream, std::int64_t step) = 0;
+  /// What a patch acts on.
+  struct Sweep {
+    Populations& f;
+    const EsotericPull& stream;
+    std::int64_t step;      ///< number of the step just made, for boundaries that change in time
+    const CoverMap* cover;  ///< covered cells; null where the scene has none
+  };
+  virtual void apply(const Sweep& sweep) = 0;
 
   /// Mass that has entered through this rank's links since the start, lattice units: with it the
   /// mass of an open box is accounted for to round-off.
@@ -85,7 +92,7 @@ class VelocityPatch final : public Patch {
   ///                    else uniform
   VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,
                 bool parabolic, const Opening& opening, const InTime& in_time);
-  void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
+  void apply(const Sweep& sweep) override;
 
  private:
   std::vector<double> gain_;  // [link]
@@ -99,7 +106,10 @@ class DensityPatch : public Patch {
   /// @param drho  density deviation on the side
   DensityPatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time);
   double drho(std::int64_t step) const { return drho_ * in_time_.factor(step); }
+  /// What arrives along a link from a side where that density is held.
+  double at_density(const Sweep& sweep, const Link& link, double drho) const;
 
+  Vec3 inward() const { return {1.0 * inward_[0], 1.0 * inward_[1], 1.0 * inward_[2]}; }
   /// The next cell inward of a link's.
   Cell3 inner(const Link& link) const {
     return {link.cell[0] + inward_[0], link.cell[1] + inward_[1], link.cell[2] + inward_[2]};
@@ -120,22 +130,28 @@ class PressurePatch final : public DensityPatch {
  public:
   PressurePatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time)
       : DensityPatch(std::move(links), side, drho, in_time) {}
-  void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
+  void apply(const Sweep& sweep) override;
 };
 
 /// An open end that lets sound and vortices out: what arrives is carried outward with the speed of
 /// sound,
 ///   ∂f_q/∂t + c_s ∂f_q/∂n = 0   (implicit upwind),
-/// while a weak pull brings the mean pressure to its target.
+/// while a weak pull brings the mean pressure to its target. Where fluid comes in instead, or a
+/// solid lies in the opening, the pressure is held, as by a pressure patch: nothing else bounds a
+/// backward flow, and what is inside a solid is no sound.
 class OutflowPatch final : public DensityPatch {
  public:
   /// @param relax  part of the deviation from drho that is taken away in a step, about c_s / box
   /// length
   OutflowPatch(std::vector<Link> links, SideName side, double drho, double relax);
-  void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
+  void apply(const Sweep& sweep) override;
   std::vector<double>& memory() override { return memory_; }
 
  private:
+  /// How far the pressure is held: 1 where the velocity u of the next cell points inward at more
+  /// than C/50, or where the solid fraction is 1.
+  double held_part(const Sweep& sweep, const Link& link, double inflow) const;
+
   double relax_;
   std::vector<double> memory_;  // [link] what arrived in the step before
 };
@@ -148,7 +164,7 @@ class PressureJumpPatch final : public DensityPatch {
   /// @param drho  Δrho on the left or bottom side, -Δrho on the other
   PressureJumpPatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time)
       : DensityPatch(std::move(links), side, drho, in_time) {}
-  void apply(Populations& f, const EsotericPull& stream, std::int64_t step) override;
+  void apply(const Sweep& sweep) override;
 };
 
 }  // namespace lbm

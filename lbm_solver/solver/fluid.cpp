@@ -117,7 +117,7 @@ void Fluid::advance(std::int64_t steps) {
 #pragma omp single
       {
         if (scheme_) scheme_->after_sweep(f_, stream);
-        for (const auto& patch : patches_) patch->apply(f_, stream, steps_ + s);
+        for (const auto& patch : patches_) patch->apply({f_, stream, steps_ + s, cover_.get()});
       }
     }
   }
