@@ -38,7 +38,10 @@ void define(CLI::App& app, Options& o) {
   app.set_version_flag("--version", std::string("lbm ") + BPLBM_VERSION);
   app.add_option("--out", o.run.out, "folder of all output")->capture_default_str();
   app.add_option("--until", o.run.until, "stop at this time [s]")->check(CLI::PositiveNumber);
-  app.add_flag("--restart", o.run.restart, "go on from the checkpoint in --out");
+  app.add_flag("--restart{checkpoint}", o.run.restart,
+               "go on from the checkpoint in --out, or, with --restart=fault, from the last states "
+               "that both programs kept when a run failed")
+      ->check(CLI::IsMember({"checkpoint", "fault"}));
   app.add_option("--record", o.record, "write the exchange to this trace file");
   app.add_option("--threads", o.threads, "threads (else OMP_NUM_THREADS, else 1)")
       ->check(CLI::Range(1, 1024));

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <mpi.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -81,6 +82,20 @@ int leave_after(const std::exception& error, const std::string& program, Channel
     channel->await_farewell(kFarewellSeconds);
   }
   abort_job(code);
+}
+
+namespace {
+volatile std::sig_atomic_t code_at_deadline = 0;
+}
+
+Deadline::Deadline(int exit_code, unsigned seconds) {
+  code_at_deadline = exit_code;
+  std::signal(SIGALRM, [](int) { std::_Exit(code_at_deadline); });
+  alarm(seconds);
+}
+
+Deadline::~Deadline() {
+  alarm(0);
 }
 
 void abort_job(int exit_code) {

@@ -27,6 +27,17 @@ bool signalled();
 /// which a living partner would have answered
 void throw_if_signalled();
 
+/// What a failing program still does has so many seconds; then the process ends. Collective work of
+/// several ranks can wait for one that is no longer there.
+class Deadline {
+ public:
+  /// @param exit_code  of the process where the time is up
+  explicit Deadline(int exit_code, unsigned seconds = 5);
+  ~Deadline();
+  Deadline(const Deadline&) = delete;
+  Deadline& operator=(const Deadline&) = delete;
+};
+
 /// Ends the whole MPI job now, flushing the standard streams first.
 [[noreturn]] void abort_job(int exit_code);
 

@@ -67,7 +67,8 @@ def parser():
                    help="who moves the particles; the last two suit free discs")
     p.add_argument("--until", type=float, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
-    p.add_argument("--restart", action="store_true", help="go on from the checkpoint in --out")
+    p.add_argument("--restart", nargs="?", const="checkpoint", choices=["checkpoint", "fault"],
+                   help="go on from the checkpoint in --out, or from the states kept at a fault")
     p.add_argument("--out", metavar="DIR", help="default: out/SCENE[-SET][-VARIANT]")
     p.add_argument("--no-study", action="store_true", help="leave out the scene's comparison runs")
     p.epilog = "A scene may have choices of its own (--list), as --start 5 of disc_migration."
@@ -135,7 +136,7 @@ def command(args, out):
     fluid += ["--set", args.set] + (["--variant", label(args)] if label(args) else [])
     fluid += ["--until", repr(args.until)] if args.until else []
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
-    fluid += ["--restart"] if args.restart else []
+    fluid += [f"--restart={args.restart}"] if args.restart else []
     first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
     solid = solid_command(args, bin_dir, out)
     return first + ([":", "-np", str(args.solid_ranks), *solid] if solid else [])
@@ -230,6 +231,9 @@ def main():
         print(f"run | stopped with exit code {code}; logs in {out}", file=sys.stderr)
         if code in (1, 3) and (out / "checkpoint.h5").exists():
             print("run | its last checkpoint is complete: the same command with --restart goes on from there",
+                  file=sys.stderr)
+        if (out / "fault.h5").exists():
+            print("run | states of the fault are kept (fault.*): --restart=fault goes on from them if both sides' are",
                   file=sys.stderr)
         return code
     draw(args.scene, out)

@@ -76,16 +76,22 @@ std::int64_t checkpoint_intervals(const Scene& scene, const Plan& plan) {
 /// Where a coupled run begins; checks that the solid has its part of the checkpoint.
 RunStart start_of(const RunOptions& options, const Plan& plan, const State& state) {
   RunStart start;
-  start.checkpoint = std::filesystem::absolute(options.out + "/checkpoint").lexically_normal();
-  if (!options.restart) return start;
+  const auto path = [&](const std::string& name) {
+    return std::filesystem::absolute(options.out + "/" + name).lexically_normal().string();
+  };
+  start.checkpoint = path("checkpoint");
+  if (options.restart.empty()) return start;
   start.interval = static_cast<std::int64_t>(state.at("interval")[0]);
   if (start.interval >= last_interval(plan, options))
-    throw InputError(start.checkpoint + ".h5", "lies at the end of the run: nothing is left to do",
+    throw InputError(path(options.restart) + ".h5",
+                     "lies at the end of the run: nothing is left to do",
                      "raise --until, or start again without --restart");
-  const std::string solid = solid_checkpoint(start.checkpoint, start.interval);
-  if (!std::filesystem::is_regular_file(solid))
-    throw InputError(solid, "is missing: the solid's part of the checkpoint",
-                     "start again without --restart");
+  start.solid_part = solid_checkpoint(path(options.restart), start.interval);
+  if (!std::filesystem::is_regular_file(start.solid_part))
+    throw InputError(start.solid_part, "is missing: the solid's part of the checkpoint",
+                     options.restart == "fault"
+                         ? "use --restart alone for the last whole checkpoint"
+                         : "start again without --restart");
   return start;
 }
 
@@ -99,7 +105,9 @@ class CoupledRun {
         ranks_(ranks),
         options_(options),
         log_(log),
-        state_(options.restart ? load(options.out + "/checkpoint.h5", plan, ranks) : State{}),
+        state_(options.restart.empty()
+                   ? State{}
+                   : load(options.out + "/" + options.restart + ".h5", plan, ranks)),
         start_(start_of(options, plan, state_)),
         solid_(channel, make_hello(scene, plan, start_, ranks.cells()), scene.coupling->timeout),
         fluid_(make_fluid(scene, plan, ranks)),
@@ -115,33 +123,19 @@ class CoupledRun {
     log.say(start_.interval, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s{}",
             partner_.program, partner_.program_version, plan.substeps, plan.interval(),
             scene.coupling->overlapped ? ", overlapped" : "");
-    if (!options.restart) return;
+    if (options.restart.empty()) return;
     fluid_.restore(state_);
     particles_.restore(state_.at("particles"));
     observers_.restore(state_.at("observers"));
-    log.say(start_.interval, "restart", "goes on from {}.h5", start_.checkpoint);
+    log.say(start_.interval, "restart", "goes on from {}/{}.h5", options.out, options.restart);
   }
 
   Summary run() {
-    for (std::int64_t interval = start_.interval;; ++interval) {
-      const protocol::Arrival& arrival = solid_.receive();
-      clock_.charge("waiting");
-      if (arrival.goodbye) {
-        ending_ = "stopped by solid: " + *arrival.goodbye;
-        break;
-      }
-      if (arrival.head.flags & protocol::kCheckpoint) write_checkpoint(interval);
-      particles_.arrive(arrival.particles, plan_.interval());
-      particles_.tell_bonds(arrival.bonds);
-      if (arrival.head.flags & protocol::kLast) {
-        observers_.at_end(interval, fluid_, &particles_);
-        break;
-      }
-      for (int step = 0; step < plan_.fluid_steps; ++step) advance(step);
-      solid_.answer(particles_.mean_loads(plan_.fluid_steps), flags_after(interval));
-      clock_.charge("exchange");
-      observers_.after_interval(interval, fluid_, &particles_);
-      clock_.charge("output");
+    try {
+      exchange_until_end();
+    } catch (const std::exception& error) {
+      keep_last_state(error);
+      throw;
     }
     clock_.charge("output");
     Summary summary = summarise(scene_, options_, observers_, clock_, ending_);
@@ -153,6 +147,31 @@ class CoupledRun {
   }
 
  private:
+  void exchange_until_end() {
+    for (std::int64_t interval = start_.interval;; ++interval) {
+      const protocol::Arrival& arrival = solid_.receive();
+      clock_.charge("waiting");
+      if (arrival.goodbye) {
+        ending_ = "stopped by solid: " + *arrival.goodbye;
+        break;
+      }
+      if (arrival.head.flags & protocol::kCheckpoint) write_checkpoint(interval);
+      stands_at_.reset();
+      particles_.arrive(arrival.particles, plan_.interval());
+      particles_.tell_bonds(arrival.bonds);
+      if (arrival.head.flags & protocol::kLast) {
+        observers_.at_end(interval, fluid_, &particles_);
+        break;
+      }
+      for (int step = 0; step < plan_.fluid_steps; ++step) advance(step);
+      solid_.answer(particles_.mean_loads(plan_.fluid_steps), flags_after(interval));
+      stands_at_ = interval + 1;
+      clock_.charge("exchange");
+      observers_.after_interval(interval, fluid_, &particles_);
+      clock_.charge("output");
+    }
+  }
+
   void advance(int step) {
     bodies_.resize(obstacles_);
     const auto moving = particles_.bodies(step * plan_.units.dt);
@@ -188,11 +207,30 @@ class CoupledRun {
   }
 
   /// The solid's part lies on disk; with the fluid's both are complete.
-  void write_checkpoint(std::int64_t interval) {
+  void write_checkpoint(std::int64_t interval) { write_state("checkpoint", interval); }
+
+  void write_state(const std::string& name, std::int64_t interval) {
     State state = fluid_.state();
     state["particles"] = particles_.memory();
-    save(start_.checkpoint + ".h5", plan_, ranks_, std::move(state), observers_, interval);
+    save(options_.out + "/" + name + ".h5", plan_, ranks_, std::move(state), observers_, interval);
     clock_.charge("checkpoint");
+  }
+
+  /// At a fault, where the scene has checkpoints: the fluid's part of one, beside the last whole
+  /// one, if the fluid stands between two intervals and is finite. The solid keeps its part where
+  /// it can, and where both stood at one interval, --restart=fault goes on from there.
+  void keep_last_state(const std::exception& error) {
+    const bool everywhere = ranks_.alone() || dynamic_cast<const NumericsError*>(&error) ||
+                            dynamic_cast<const protocol::PeerFault*>(&error);
+    if (every_ == 0 || !stands_at_ || !everywhere) return;
+    const protocol::Deadline deadline(protocol::exit_code_of(error));
+    try {
+      if (!fluid_.extremes().finite) return;
+      write_state("fault", *stands_at_);
+      log_.say(*stands_at_, "fault", "the fluid's last state is kept in {}/fault.h5", options_.out);
+    } catch (const std::exception& second) {
+      log_.say(*stands_at_, "fault", "the fluid's last state is not kept: {}", second.what());
+    }
   }
 
   const Scene& scene_;
@@ -212,6 +250,7 @@ class CoupledRun {
   const protocol::Hello& partner_;
   Observers observers_;
   const std::int64_t end_, every_;
+  std::optional<std::int64_t> stands_at_ = start_.interval;  // no part of an interval is done
   std::string ending_ = "complete";
   PartClock clock_;
 };
@@ -225,16 +264,19 @@ Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& r
 
 Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                   const RunOptions& options, Log& log) {
+  if (options.restart == "fault")
+    throw InputError(options.out + "/fault.h5", "is kept by coupled runs only",
+                     "use --restart for the last checkpoint");
   const std::string checkpoint = options.out + "/checkpoint.h5";
   Fluid fluid = make_fluid(scene, plan, ranks);
   State state;
-  if (options.restart) {
+  if (!options.restart.empty()) {
     state = load(checkpoint, plan, ranks);
     fluid.restore(state);
   }
   const bool loads = !obstacle_bodies(scene, plan).empty();
   Observers observers(scene, plan, ranks, options.out, log, fluid.steps());
-  if (options.restart) {
+  if (!options.restart.empty()) {
     observers.restore(state["observers"]);
     log.say(fluid.steps(), "restart", "goes on from {}", checkpoint);
   }

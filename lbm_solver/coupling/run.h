@@ -10,9 +10,9 @@
 namespace lbm {
 
 struct RunOptions {
-  std::string out = "out";                ///< folder of all output; created where missing
-  std::optional<double> until;            ///< stop at this time [s] instead of the scene's end
-  bool restart = false;                   ///< go on from the checkpoint in `out`
+  std::string out = "out";      ///< folder of all output; created where missing
+  std::optional<double> until;  ///< stop at this time [s] instead of the scene's end
+  std::string restart;  ///< go on from "checkpoint" or "fault" in `out`; empty: from the start
   std::string set = "resolved", variant;  ///< names for the summary
 };
 

@@ -50,6 +50,7 @@ Plan make_plan(const Scene& scene);
 struct RunStart {
   std::int64_t interval = 0;                  ///< 0, or that of the checkpoint it goes on from
   std::string checkpoint = "out/checkpoint";  ///< path without ending
+  std::string solid_part = "none";            ///< the solid's file of the one it goes on from
 };
 
 /// The solid's checkpoint of an interval: the fluid's names the interval that both have.

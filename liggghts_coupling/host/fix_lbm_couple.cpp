@@ -15,12 +15,14 @@
 #include <update.h>
 #include <write_restart.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/solid_hello.h"
+#include "protocol/program.h"
 #include "protocol/trace.h"
 
 namespace dem {
@@ -222,11 +224,20 @@ void FixLbmCouple::send_states() {
                interval_ - coupling.session->fluid().first_interval, coupling.session->waited());
 }
 
+protocol::SolidSession::Reply FixLbmCouple::collect() {
+  try {
+    return Coupling::instance().session->collect();
+  } catch (const std::exception& error) {
+    keep_last_state(error);
+    throw;
+  }
+}
+
 /// @param add_change  the forces of the step just done are still in f and will act in the next
 ///                    first half-step: replace the old load by the new one there too, so that the
 ///                    impulse of an interval is its load times its length
 void FixLbmCouple::take_loads(bool add_change) {
-  const auto reply = Coupling::instance().session->collect();
+  const auto reply = collect();
   underway_ = false;
   stop_asked_ = reply.flags & protocol::kStop;
   checkpoint_asked_ = reply.flags & protocol::kCheckpoint;
@@ -296,30 +307,45 @@ void FixLbmCouple::settle_again() {
 }
 
 /// Leaves this checkpoint and the one before.
-void FixLbmCouple::remove_older(const std::string& name) {
-  const std::filesystem::path prefix(checkpoint_);
-  for (const auto& entry : std::filesystem::directory_iterator(prefix.parent_path())) {
-    const std::string found = entry.path().string();
-    if (found.starts_with(checkpoint_ + ".") && found.ends_with(".solid") && found != name &&
-        found != last_checkpoint_)
-      std::filesystem::remove(entry.path());
-  }
-  last_checkpoint_ = name;
+void FixLbmCouple::write_checkpoint() {
+  last_checkpoint_ = write_part(checkpoint_, last_checkpoint_);
+  MPI_Barrier(world);  // it is there before any rank says so
 }
 
-/// Whole or not at all; the one before stays until the fluid has this one too.
-void FixLbmCouple::write_checkpoint() {
-  const std::string name = fmt::format("{}.{}.solid", checkpoint_, interval_),
-                    part = name + ".part";
+/// At a fault, where the scene has checkpoints: this interval's particles, if they are finite, so
+/// that --restart=fault can go on from them where the fluid kept its part of the same interval.
+void FixLbmCouple::keep_last_state(const std::exception& error) {
+  const bool everywhere = comm->nprocs == 1 || dynamic_cast<const protocol::PeerFault*>(&error);
+  if (!(Coupling::instance().session->fluid().features & protocol::kCheckpoints) || !everywhere)
+    return;
+  const protocol::Deadline deadline(protocol::exit_code_of(error));
+  int finite = 1;
+  for (int i = 0; i < atom->nlocal; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (!std::isfinite(atom->x[i][k] + atom->v[i][k] + atom->omega[i][k])) finite = 0;
+  MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, world);
+  if (finite) write_part((std::filesystem::path(checkpoint_).parent_path() / "fault").string(), "");
+}
+
+/// A restart file of this interval, whole or not at all; of the others of that name only `keep`
+/// stays. @return its name
+std::string FixLbmCouple::write_part(const std::string& prefix, const std::string& keep) {
+  const std::string name = fmt::format("{}.{}.solid", prefix, interval_), part = name + ".part";
   std::string writable = part;
   LAMMPS_NS::WriteRestart(lmp).write(writable.data());
   MPI_Barrier(world);
   if (comm->me == 0) {
     if (std::rename(part.c_str(), name.c_str()) != 0)
       error->one(FLERR, ("fix lbm/couple: the checkpoint " + name + " cannot be written").c_str());
-    remove_older(name);
+    const auto folder = std::filesystem::path(prefix).parent_path();
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      const std::string found = entry.path().string();
+      if (found.starts_with(prefix + ".") && found.ends_with(".solid") && found != name &&
+          found != keep)
+        std::filesystem::remove(entry.path());
+    }
   }
-  MPI_Barrier(world);  // it is there before any rank says so
+  return name;
 }
 
 // ---- held loads travel with their particles ---------------------------------------------------

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/messages.h"
+#include "protocol/session.h"
 
 namespace dem {
 
@@ -50,12 +50,14 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   static std::optional<protocol::BondReport> bond_report();
   void begin(int vflag);
   void send_states();
+  protocol::SolidSession::Reply collect();
   void take_loads(bool add_change);
   void hold(int i, const protocol::Load& load, bool add_change);
   void forward(std::vector<protocol::Load>& orphans, bool add_change);
   void settle_again();
   void write_checkpoint();
-  void remove_older(const std::string& name);
+  void keep_last_state(const std::exception& error);
+  std::string write_part(const std::string& prefix, const std::string& keep);
   [[noreturn]] void fail(const std::string& text) const;
 
   int substeps_ = 0;

@@ -25,8 +25,9 @@ class CheckpointTest : public testing::Test {
     case_ = BPLBM_SOURCE_DIR "/cases/" + scene;
     folder_.write("overlay.toml", overlay);
   }
-  std::string job(const std::string& out, const std::string& options, int solid_ranks = 1) const {
-    return test::mpirun({kLbm + " " + case_ + "/scene.toml overlay.toml --progress none --out " +
+  std::string job(const std::string& out, const std::string& options, int solid_ranks = 1,
+                  const std::string& lbm = kLbm) const {
+    return test::mpirun({lbm + " " + case_ + "/scene.toml overlay.toml --progress none --out " +
                          out + " " + options},
                         {kLiggghts + " -in " + case_ +
                              "/in.liggghts -log none -screen none -var "
@@ -102,6 +103,49 @@ TEST_F(CheckpointTest, ASignalEndsBothWithACheckpoint) {
   expect_ok(run("parts", "--restart"));
   // the whole run wrote no checkpoint there, so its particles were not set up anew: one disc, alike
   expect_same("probes.csv");
+}
+
+/// lbm where no file may grow beyond 1.6 MB: room for a checkpoint, not for all frames of the
+/// fields.
+const std::string kShortOfDisk =
+    "sh " BPLBM_SOURCE_DIR "/tests/support/short_of_disk.sh 1600 " + kLbm;
+
+// The fluid cannot write its fields; both stand at one interval and keep their states.
+TEST_F(CheckpointTest, AFaultKeepsTheStatesOfBoth) {
+  for (const int ranks : {1, 2}) {
+    use("settling_disc",
+        "[run]\nend_time = 0.3\ncheckpoint_every = 10.0\n[numerics]\ncells_per_diameter = 10\n"
+        "[output]\nfields_every = 0.02\nprobe_every = 0.002\n");
+    expect_ok(run("whole", "", ranks));
+    std::filesystem::remove_all(folder_.path() + "/parts");
+    const JobResult cut = test::run(job("parts", "", ranks, kShortOfDisk), folder_.path(), 60.0);
+    EXPECT_EQ(cut.exit_code, 1) << cut.output;
+    EXPECT_NE(cut.output.find("is the disk full?"), std::string::npos) << cut.output;
+    EXPECT_NE(cut.output.find("last state is kept in parts/fault.h5"), std::string::npos)
+        << cut.output;
+    ASSERT_EQ(solid_checkpoints("parts").size(), 1U) << cut.output;
+    expect_ok(run("parts", "--restart=fault", ranks));
+    expect_same("probes.csv");
+  }
+}
+
+TEST_F(CheckpointTest, AFaultOfOneAloneIsNoPlaceToGoOnFrom) {
+  use("settling_disc",
+      "[run]\nend_time = 100.0\ncheckpoint_every = 0.05\n[numerics]\ncells_per_diameter = 10\n"
+      "[output]\nfields_every = 100.0\n");
+  const JobResult cut =
+      test::run("(" + job("parts", "") +
+                    ") & job=$!; until [ -s parts/checkpoint.h5 ]; do sleep 0.05; done; "
+                    "pkill -KILL -x -P $job liggghts; wait $job",
+                folder_.path(), 60.0);
+  EXPECT_FALSE(cut.timed_out) << cut.output;
+  const JobResult rest = run("parts", "--restart=fault --until 90");
+  EXPECT_EQ(rest.exit_code, 2);
+  const bool kept = std::filesystem::exists(folder_.path() + "/parts/fault.h5");
+  EXPECT_NE(rest.output.find(kept ? "is missing: the solid's part of the checkpoint"
+                                  : "fault.h5: no checkpoint to restart from"),
+            std::string::npos)
+      << rest.output;
 }
 
 TEST_F(CheckpointTest, SaysWhatIsMissing) {

@@ -236,7 +236,7 @@ TEST(FullDisk, EndsBothWithTheReason) {
   scene.change_scene("end_time = 0.04", "end_time = 1.0");
   scene.change_scene("fields_every = 0.05", "fields_every = 0.005");
   const std::string limited =
-      "sh -c \"trap '' XFSZ; ulimit -f 2000; exec " + kLbm + " --progress none\"";
+      "sh " BPLBM_SOURCE_DIR "/tests/support/short_of_disk.sh 1000 " + kLbm + " --progress none";
   const auto job =
       test::run(mpirun({limited}, {kLiggghts + " -screen none"}), scene.folder(), 30.0);
   expect_end(job, 1, {"is the disk full?", "liggghts | error | the fluid program stopped"});
