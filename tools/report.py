@@ -1,6 +1,6 @@
 """Speed against error of every choice, and which of them survive the hard cases.
 
-    tools/report [--quick|--full] [CASE…]     CASE: array, cylinder, couette, settling, stability, features
+    tools/report [--quick|--full] [CASE…]     CASE: array, spheres, cylinder, couette, settling, stability, features
 
 One run is one row: a scene of cases/ with an overlay, judged against a reference. What has been run is kept in
 out/report and not run again (--again does). Writes report.md, rows.csv, rows.json and a picture a case there.
@@ -82,6 +82,8 @@ def verdict(code, error):
     if code == 2:
         return "refused"
     found = re.search(r"interval (\d+)", error)
+    if found and found.group(1) == "0":
+        return "refused"  # the initial state is faster than 0.2 C already
     return f"blown up at step {found.group(1)}" if code == 3 and found else f"failed ({code})"
 
 

@@ -151,4 +151,11 @@ inline void flush_denormals() {
 #endif
 }
 
+/// Asks for the cache lines of an object that is soon to be read and written.
+template <std::size_t bytes>
+[[gnu::always_inline]] inline void prefetch_bytes(const void* at) {
+  for (std::size_t i = 0; i < bytes; i += 64)
+    __builtin_prefetch(static_cast<const char*>(at) + i, 1, 3);
+}
+
 }  // namespace lbm

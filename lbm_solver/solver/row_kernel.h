@@ -49,6 +49,7 @@ class RowKernel final : public Kernel {
   using V = PackOf<Real>;
   using Row = EsotericPull::Row<L, Real>;
   static constexpr int kWidth = V::size();
+  static constexpr int kRecordsAhead = 3;
 
  public:
   explicit RowKernel(const KernelChoice& c) : collide_(c.parameters) {
@@ -99,6 +100,8 @@ class RowKernel final : public Kernel {
       const int x = next * kPackWidth;
       if constexpr (L::D == 3) prefetch.fetch(L::Q + 3);
       CoverBlock<L::D>& block = *cover.block<L::D>(y, z, next);
+      prefetch_bytes<sizeof block>(&block +
+                                   kRecordsAhead);  // records lie in the order of the sweep
       if (x + kPackWidth <= n)
         covered(row, x, block, AllLanes<Pack>());
       else
