@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// How a box on several ranks gets into one file: gathered on rank 0, as lbm does, or written by all
-/// with parallel HDF5. Built by hand where that is installed: `ninja output_benchmark`.
+/// How a box on several ranks gets into one file: gathered on rank 0, as lbm does, or written by
+/// all with parallel HDF5. Built by hand where that is installed: `ninja output_benchmark`.
 ///   mpirun -np 2 output_benchmark FOLDER
 #include <fcntl.h>
 #include <hdf5.h>
@@ -90,8 +90,8 @@ int main(int argc, char** argv) {
       best[1] = std::min(best[1], seconds([&] { parallel(path, populations, ranks); }));
     }
     if (ranks.rank == 0)
-      std::printf("%-6d %d³  %-7.0f %-13.3f %.3f\n", ranks.size, n,
-                  152e-6 * cells * ranks.size, best[0], best[1]);
+      std::printf("%-6d %d³  %-7.0f %-13.3f %.3f\n", ranks.size, n, 152e-6 * cells * ranks.size,
+                  best[0], best[1]);
   }
   if (ranks.rank == 0) std::remove(path.c_str());
   MPI_Finalize();
