@@ -129,9 +129,9 @@ OutflowPatch::OutflowPatch(std::vector<Link> links, SideName side, double drho, 
 
 double OutflowPatch::held_part(const Sweep& sweep, const Link& link, double inflow) const {
   double held = std::min(1.0, inflow / kInflow);
-  if (!sweep.cover) return held;
-  for (const Cell3& c : {link.cell, inner(link)})
-    held = std::max(held, sweep.cover->solid_fraction(c[0], c[1], c[2]));
+  if (!sweep.solid_fraction) return held;
+  for (const Cell3& cell : {link.cell, inner(link)})
+    held = std::max(held, sweep.solid_fraction(cell));
   return held;
 }
 

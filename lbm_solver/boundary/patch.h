@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "lbm_solver/base/side.h"
 #include "lbm_solver/field/cell_pass.h"
-#include "lbm_solver/immersed/cover_map.h"
 
 namespace lbm {
 
@@ -48,8 +48,8 @@ class Patch {
   struct Sweep {
     Populations& f;
     const EsotericPull& stream;
-    std::int64_t step;      ///< number of the step just made, for boundaries that change in time
-    const CoverMap* cover;  ///< covered cells; null where the scene has none
+    std::int64_t step;  ///< number of the step just made, for boundaries that change in time
+    const std::function<double(const Cell3&)>& solid_fraction;  ///< empty: there are no solids
   };
   virtual void apply(const Sweep& sweep) = 0;
 

@@ -95,6 +95,8 @@ void Fluid::sweep_and_exchange(EsotericPull& stream) {
 
 void Fluid::advance(std::int64_t steps) {
   const bool passes = scheme_ || !patches_.empty();
+  std::function<double(const Cell3&)> solids;
+  if (cover_) solids = [this](const Cell3& c) { return cover_->solid_fraction(c[0], c[1], c[2]); };
 #pragma omp parallel
   {
     flush_denormals();
@@ -117,7 +119,7 @@ void Fluid::advance(std::int64_t steps) {
 #pragma omp single
       {
         if (scheme_) scheme_->after_sweep(f_, stream);
-        for (const auto& patch : patches_) patch->apply({f_, stream, steps_ + s, cover_.get()});
+        for (const auto& patch : patches_) patch->apply({f_, stream, steps_ + s, solids});
       }
     }
   }
