@@ -8,6 +8,7 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -170,7 +171,23 @@ def run_job(args, out):
     added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)
     print(f"run | {added + ' ' if added else ''}{shlex.join(line)}", flush=True)
     code = subprocess.run(line, env=env, check=False).returncode
+    if code == 0:
+        add_solid_waiting(out)
     return code if code in (0, 1, 2, 3) else 1
+
+
+def add_solid_waiting(out):
+    """Adds the seconds that LIGGGHTS waited for the fluid, from its log, to summary.json beside the fluid's."""
+    log = out / "liggghts.log"
+    found = re.search(r"fix lbm/couple: \d+ intervals, (\S+) s of waiting", log.read_text()) if log.exists() else None
+    if not found:
+        return
+    path = out / "summary.json"
+    summary = json.loads(path.read_text())
+    summary["solid_waiting"] = float(found.group(1))
+    path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
+    print(f"run | waiting: the fluid {summary['waiting']:.3g} s for the solid, the solid {summary['solid_waiting']:.3g} s for "
+          f"the fluid, of {summary['wall_seconds']:.3g} s")
 
 
 def draw(scene, out):
