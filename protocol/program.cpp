@@ -17,6 +17,8 @@ namespace {
 constexpr double kFarewellSeconds = 3.0;
 volatile std::sig_atomic_t caught = 0;
 std::timespec caught_at{};
+volatile std::sig_atomic_t code_at_deadline = 0;
+std::string text_at_deadline;
 
 void note_signal(int signal) {
   if (!caught) clock_gettime(CLOCK_MONOTONIC, &caught_at);
@@ -84,13 +86,14 @@ int leave_after(const std::exception& error, const std::string& program, Channel
   abort_job(code);
 }
 
-namespace {
-volatile std::sig_atomic_t code_at_deadline = 0;
-}
-
-Deadline::Deadline(int exit_code, unsigned seconds) {
-  code_at_deadline = exit_code;
-  std::signal(SIGALRM, [](int) { std::_Exit(code_at_deadline); });
+Deadline::Deadline(const std::exception& error, const std::string& program, unsigned seconds) {
+  code_at_deadline = exit_code_of(error);
+  text_at_deadline = fmt::format("{} | error | {}\n", program, error.what());
+  std::signal(SIGALRM, [](int) {
+    [[maybe_unused]] const auto written =
+        write(STDERR_FILENO, text_at_deadline.data(), text_at_deadline.size());
+    std::_Exit(code_at_deadline);
+  });
   alarm(seconds);
 }
 

@@ -27,12 +27,12 @@ bool signalled();
 /// which a living partner would have answered
 void throw_if_signalled();
 
-/// What a failing program still does has so many seconds; then the process ends. Collective work of
-/// several ranks can wait for one that is no longer there.
+/// What a failing program still does has so many seconds; then the process says why it failed and
+/// ends. Collective work of several ranks can wait for one that is no longer there.
 class Deadline {
  public:
-  /// @param exit_code  of the process where the time is up
-  explicit Deadline(int exit_code, unsigned seconds = 5);
+  /// @param error  what it fails of: the text and the exit code where the time is up
+  Deadline(const std::exception& error, const std::string& program, unsigned seconds = 5);
   ~Deadline();
   Deadline(const Deadline&) = delete;
   Deadline& operator=(const Deadline&) = delete;

@@ -68,8 +68,9 @@ def parser():
                    help="who moves the particles; the last two suit free discs")
     p.add_argument("--until", type=float, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
-    p.add_argument("--restart", nargs="?", const="checkpoint", choices=["checkpoint", "fault"],
-                   help="go on from the checkpoint in --out, or from the states kept at a fault")
+    p.add_argument("--restart", action="store_const", const="checkpoint", help="go on from the checkpoint in --out")
+    p.add_argument("--restart=fault", dest="restart", action="store_const", const="fault",
+                   help="go on from the states that both programs kept at a fault")
     p.add_argument("--out", metavar="DIR", help="default: out/SCENE[-SET][-VARIANT]")
     p.add_argument("--no-study", action="store_true", help="leave out the scene's comparison runs")
     p.epilog = "A scene may have choices of its own (--list), as --start 5 of disc_migration."

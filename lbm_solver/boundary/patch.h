@@ -137,8 +137,8 @@ class PressurePatch final : public DensityPatch {
 /// sound,
 ///   ∂f_q/∂t + c_s ∂f_q/∂n = 0   (implicit upwind),
 /// while a weak pull brings the mean pressure to its target. Where fluid comes in instead, or a
-/// solid lies in the opening, the pressure is held, as by a pressure patch: nothing else bounds a
-/// backward flow, and what is inside a solid is no sound.
+/// solid lies in the opening, the pressure is held, as by a pressure patch, less ½ rho u² of what
+/// comes in: nothing else bounds a backward flow, and what is inside a solid is no sound.
 class OutflowPatch final : public DensityPatch {
  public:
   /// @param relax  part of the deviation from drho that is taken away in a step, about c_s / box
@@ -148,8 +148,7 @@ class OutflowPatch final : public DensityPatch {
   std::vector<double>& memory() override { return memory_; }
 
  private:
-  /// How far the pressure is held: 1 where the velocity u of the next cell points inward at more
-  /// than C/50, or where the solid fraction is 1.
+  /// How far the pressure is held: 1 from an inflow of C/50 on, or where the solid fraction is 1.
   double held_part(const Sweep& sweep, const Link& link, double inflow) const;
 
   double relax_;

@@ -223,7 +223,7 @@ class CoupledRun {
     const bool everywhere = ranks_.alone() || dynamic_cast<const NumericsError*>(&error) ||
                             dynamic_cast<const protocol::PeerFault*>(&error);
     if (every_ == 0 || !stands_at_ || !everywhere) return;
-    const protocol::Deadline deadline(protocol::exit_code_of(error));
+    const protocol::Deadline deadline(error, "lbm");
     try {
       if (!fluid_.extremes().finite) return;
       write_state("fault", *stands_at_);

@@ -100,8 +100,8 @@ class RowKernel final : public Kernel {
       const int x = next * kPackWidth;
       if constexpr (L::D == 3) prefetch.fetch(L::Q + 3);
       CoverBlock<L::D>& block = *cover.block<L::D>(y, z, next);
-      prefetch_bytes<sizeof block>(&block +
-                                   kRecordsAhead);  // records lie in the order of the sweep
+      // records lie in the order of the sweep
+      prefetch_bytes<sizeof block>(&block + kRecordsAhead);
       if (x + kPackWidth <= n)
         covered(row, x, block, AllLanes<Pack>());
       else

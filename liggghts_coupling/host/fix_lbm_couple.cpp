@@ -318,7 +318,7 @@ void FixLbmCouple::keep_last_state(const std::exception& error) {
   const bool everywhere = comm->nprocs == 1 || dynamic_cast<const protocol::PeerFault*>(&error);
   if (!(Coupling::instance().session->fluid().features & protocol::kCheckpoints) || !everywhere)
     return;
-  const protocol::Deadline deadline(protocol::exit_code_of(error));
+  const protocol::Deadline deadline(error, "liggghts");
   int finite = 1;
   for (int i = 0; i < atom->nlocal; ++i)
     for (int k = 0; k < 3; ++k)

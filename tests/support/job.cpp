@@ -70,7 +70,8 @@ JobResult run(const std::string& command, const std::string& folder, double limi
 }
 
 TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "bplbm-test-XXXXXX").string();
+  std::string pattern = (std::filesystem::temp_directory_path() / "bplbm-test-").string();
+  pattern += std::string(6, 'X');  // mkdtemp puts a name there
   if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make a temporary folder");
   path_ = pattern;
 }
