@@ -120,17 +120,20 @@ void FixLbmCouple::setup(int vflag) {
     post_force(vflag);
     return;
   }
-  if (set_up_)
-    fail(Coupling::instance().over
-             ? "the fluid has reached its end and left: no run may follow"
-             : "a second run, or 'run N every M', is not possible: the fluid goes on from the "
-               "first; use a single run");
-  set_up_ = true;
-  begin(vflag);
+  if (Coupling::instance().over)
+    fail(
+        "the fluid has reached its end and left: no run may follow; let the last one end there "
+        "with 'run ${solid_steps_total} upto'");
+  if (!set_up_)
+    begin();
+  else
+    go_on();
+  post_force(vflag);
 }
 
-void FixLbmCouple::begin(int vflag) {
+void FixLbmCouple::begin() {
   Coupling& coupling = Coupling::instance();
+  if (coupling.agreed) fail("was removed and made anew: keep the first one for all runs");
   const protocol::Hello& fluid = coupling.session->fluid();
   protocol::Hello hello = SolidHello(lmp, groupbit, substeps_).collect();
   if (hello.buoyancy != protocol::Buoyancy::BySolid)
@@ -145,13 +148,28 @@ void FixLbmCouple::begin(int vflag) {
     if (v.name == "restart_file" && interval_ > 0) last_checkpoint_ = v.value;
   }
   coupling.session->agree(hello);
-  coupling.agreed = true;
-  first_step_ = update->ntimestep;
+  coupling.agreed = set_up_ = true;
+  first_step_ = step_ = update->ntimestep;
+  time_step_ = update->dt;
   send_states();
   // The first interval is serial in either schedule, unless a checkpoint has the loads to begin
   // with.
   if (!overlapped_ || interval_ == 0) take_loads(false);
-  post_force(vflag);
+}
+
+/// A later run goes on where the one before ended, with the loads held there. What the script did
+/// to the particles in between, the fluid sees with the next states.
+void FixLbmCouple::go_on() const {
+  if (update->ntimestep != step_)
+    fail(
+        fmt::format("the step was {} at the end of the last run and is {} now: the fluid counts "
+                    "on; leave out reset_timestep",
+                    step_, update->ntimestep));
+  if (update->dt != time_step_)
+    fail(
+        fmt::format("the time step was {:g} s in the last run and is {:g} s now: the fluid was "
+                    "told the first one",
+                    time_step_, update->dt));
 }
 
 void FixLbmCouple::post_force(int) {
@@ -165,6 +183,7 @@ void FixLbmCouple::post_force(int) {
 }
 
 void FixLbmCouple::end_of_step() {
+  step_ = update->ntimestep;
   if (Coupling::instance().over || (update->ntimestep - first_step_) % substeps_ != 0) return;
   ++interval_;
   if (underway_) take_loads(true);  // overlapped: of the interval that ends, for the next one

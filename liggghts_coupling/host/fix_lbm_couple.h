@@ -15,7 +15,8 @@ namespace dem {
 /// Every N steps: sends position, velocity and angular velocity of the group's particles to the
 /// fluid and receives the mean hydrodynamic force and torque on each for the next N steps, which it
 /// adds at every step. The held loads migrate with the particles, are kept in restart files, and
-/// can be dumped as f_ID[1] … f_ID[6]. Where the fluid asks for a checkpoint, LIGGGHTS is set up
+/// can be dumped as f_ID[1] … f_ID[6]. A script may have several runs, and insert or delete
+/// particles between them. Where the fluid asks for a checkpoint, LIGGGHTS is set up
 /// anew at that step, as a restart would, and writes its restart file: the run goes on to the bit
 /// as one that was started from it.
 class FixLbmCouple final : public LAMMPS_NS::Fix {
@@ -48,7 +49,8 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void begin_recording() const;
   void gather();
   static std::optional<protocol::BondReport> bond_report();
-  void begin(int vflag);
+  void begin();
+  void go_on() const;
   void send_states();
   protocol::SolidSession::Reply collect();
   void take_loads(bool add_change);
@@ -64,7 +66,8 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   double timeout_ = 300.0;
   std::string record_;
   double** held_ = nullptr;  ///< [nmax][6] force [N] and torque [N m] of the current interval
-  LAMMPS_NS::bigint first_step_ = 0;
+  LAMMPS_NS::bigint first_step_ = 0, step_ = 0;  ///< of the first run; the one that ended last
+  double time_step_ = 0.0;                       ///< [s], of all runs
   std::int64_t interval_ = 0;
   bool stop_asked_ = false, checkpoint_asked_ = false;
   bool overlapped_ = false;  ///< loads are taken at the end of their interval

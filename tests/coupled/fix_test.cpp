@@ -81,10 +81,7 @@ std::vector<StateLine> states(const std::string& received) {
 
 // Load k is (k+1) F. After n intervals the momentum is F T n(n+1)/2, exactly if every substep of an
 // interval, its first half-kick included, acts with the interval's own load.
-TEST_F(FixTest, ImpulseIsTheLoadTimesTheInterval) {
-  const auto job = couple(script());
-  ASSERT_EQ(job.exit_code, 0) << job.output;
-  const auto all = states(received());
+void expect_impulse_of_40_intervals(const std::vector<StateLine>& all) {
   ASSERT_EQ(all.size(), 2U * 41);
   const double inertia = 0.5 * kMass * kRadius * kRadius;
   for (const auto& s : all) {
@@ -92,6 +89,21 @@ TEST_F(FixTest, ImpulseIsTheLoadTimesTheInterval) {
     EXPECT_NEAR(s.vx, 0.5 + 0.25 * sum * kInterval / kMass, 1e-12) << s.interval;
     EXPECT_NEAR(s.vy, -0.5 * sum * kInterval / kMass, 1e-12) << s.interval;
     EXPECT_NEAR(s.omega, 0.125 * sum * kInterval / inertia, 1e-9) << s.interval;
+  }
+}
+
+TEST_F(FixTest, ImpulseIsTheLoadTimesTheInterval) {
+  const auto job = couple(script());
+  ASSERT_EQ(job.exit_code, 0) << job.output;
+  expect_impulse_of_40_intervals(states(received()));
+}
+
+TEST_F(FixTest, LaterRunsGoOnAlsoFromTheMiddleOfAnInterval) {
+  for (const std::string runs : {"run 100\nrun 300", "run 0\nrun 55\nrun ${steps}",
+                                 "run 400 every 37 NULL", "run 63\nrun 400 upto every 50 NULL"}) {
+    const auto job = couple(script("fix couple all lbm/couple every 10", runs));
+    ASSERT_EQ(job.exit_code, 0) << runs << job.output;
+    expect_impulse_of_40_intervals(states(received()));
   }
 }
 
@@ -165,13 +177,16 @@ TEST_F(FixTest, WrongUseIsNamed) {
       "only one fix lbm/couple");
 }
 
-TEST_F(FixTest, ASecondRunAndRunEveryAreErrors) {
-  expect_error(couple(script("fix couple all lbm/couple every 10", "run 100\nrun 100")),
-               "a second run");
-  expect_error(couple(script("fix couple all lbm/couple every 10", "run 200 every 100 NULL")),
-               "a second run");
-  expect_error(couple(script("fix couple all lbm/couple every 10", "run ${steps}\nrun 10")),
-               "no run may follow");
+TEST_F(FixTest, ALaterRunThatCannotGoOnIsNamed) {
+  const std::string fix = "fix couple all lbm/couple every 10";
+  for (const std::string run : {"run ${steps}\nrun 10", "run 500 every 50 NULL"})
+    expect_error(couple(script(fix, run)), "no run may follow");
+  expect_error(couple(script(fix, "run 10\nreset_timestep 0\nrun 10")),
+               "the step was 10 at the end of the last run and is 0 now");
+  expect_error(couple(script(fix, "run 10\ntimestep 2e-3\nrun 10")),
+               "the time step was 0.001 s in the last run and is 0.002 s now");
+  expect_error(couple(script(fix, "run 10\nunfix couple\nunfix flat\n" + fix + "\nrun 10")),
+               "was removed and made anew");
 }
 
 TEST_F(FixTest, AScriptThatEndsEarlySaysGoodbye) {

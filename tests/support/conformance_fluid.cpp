@@ -184,10 +184,16 @@ void vanish(Channel& channel) {
 }
 
 void late(Channel& channel) {
+  double speed = 0.0;
   converse(channel, box_hello(false, {{0.3, 0.5, 0.0, 0.0, 5}}), 10, pushed,
-           [](int k, const Arrival& now) {
+           [&speed](int k, const Arrival& now) {
              expect(now.particles.size() == (k < 5 ? 0U : 1U),
                     fmt::format("interval {}: {} particles", k, now.particles.size()));
+             if (k < 5) return;
+             expect_near(now.particles[0].shape.mass, kMass, 1e-9 * kMass, "mass");
+             if (k == 5) expect_near(now.particles[0].state.x[0], 0.3, 1e-12, "place");
+             expect_near(now.particles[0].state.v[0], speed, 1e-12, "speed");
+             speed += pushed(k, now.particles[0]).force[0] * kInterval / kMass;
            });
 }
 

@@ -77,12 +77,19 @@ protocol::Hello FixLbmCouple::hello() const {
   return hello;
 }
 
+/// A later run goes on with the loads that are held; the fluid sees what the script did to the
+/// particles in between with the next states.
 void FixLbmCouple::setup(int vflag) {
   Coupling& coupling = Coupling::instance();
-  coupling.session->agree(hello());
-  coupling.agreed = true;
-  first_step_ = update->ntimestep;
-  exchange(false);
+  if (coupling.over)
+    error->all(FLERR, std::string("fix lbm/couple: the fluid has reached its end: no run may "
+                                  "follow"));
+  if (!coupling.agreed) {
+    coupling.session->agree(hello());
+    coupling.agreed = true;
+    first_step_ = update->ntimestep;
+    exchange(false);
+  }
   post_force(vflag);
 }
 
