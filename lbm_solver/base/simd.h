@@ -8,8 +8,7 @@
 #include <utility>
 
 #if defined(__SSE2__)
-#include <pmmintrin.h>
-#include <xmmintrin.h>
+#include <immintrin.h>
 #endif
 
 namespace lbm {
@@ -86,6 +85,34 @@ template <class V>
 /// 0, 1, 2, … in the lanes of a pack.
 inline Pack lane_numbers() {
   return Pack([](auto lane) { return static_cast<double>(lane); });
+}
+
+/// Stores the sums over the lanes of up to eight packs, all found at once where a pack has eight
+/// lanes: in each of three rounds neighbours are added, which makes one pack of two.
+template <class... Packs>
+[[gnu::always_inline]] inline void store_sums(double* to, const Packs&... packs) {
+  constexpr int n = sizeof...(Packs);
+#if defined(__AVX512F__)
+  using Vector = double [[gnu::vector_size(64)]];
+  static_assert(n <= 8 && kPackWidth == 8);
+  const Vector in[8] = {reinterpret_cast<Vector>(static_cast<__m512d>(packs))...};
+  Vector pairs[4] = {}, fours[2];
+  for (int i = 0; i < (n + 1) / 2; ++i) {
+    const Vector &a = in[2 * i], &b = in[2 * i + 1];
+    pairs[i] = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14) +
+               __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int i = 0; i < 2; ++i) {
+    const Vector &a = pairs[2 * i], &b = pairs[2 * i + 1];
+    fours[i] = __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13) +
+               __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
+  const Vector all = __builtin_shufflevector(fours[0], fours[1], 0, 1, 2, 3, 8, 9, 10, 11) +
+                     __builtin_shufflevector(fours[0], fours[1], 4, 5, 6, 7, 12, 13, 14, 15);
+  _mm512_mask_storeu_pd(to, (1U << n) - 1U, reinterpret_cast<__m512d>(all));
+#else
+  ((*to++ = std::experimental::reduce(packs)), ...);
+#endif
 }
 
 /// The SIMD lanes of a pack.

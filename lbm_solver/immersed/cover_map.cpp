@@ -6,259 +6,190 @@
 namespace lbm {
 namespace {
 
-constexpr double kWhole = 1.0 - 1e-12;   // a cell covered to round-off is covered whole
-constexpr std::size_t kManyBodies = 64;  // from which on it pays to divide them among threads
-
-Pack pack(const Lanes& lanes) {
-  return load<Pack>(lanes.data());
-}
-
-/// 1 surface, 0 whole, -1 core, from a solid fraction and the lanes [begin, end) of a core.
-Pack layer_of(const Pack& eps, int core_begin, int core_end) {
-  const Pack lane = lane_numbers();
-  Pack layer(0.0);
-  where(eps < Pack(kWhole), layer) = Pack(1.0);
-  where(lane >= Pack(core_begin) && lane < Pack(core_end), layer) = Pack(-1.0);
-  return layer;
-}
-
-/// Velocity v + ω × r of a body's material at the cells of a block; discs turn about z alone.
-template <int D>
-struct Velocity {
-  Pack at[D];
-  Velocity(const Body& body, const Footprint::Span& s, int k) {
-    const Vec3 &v = body.velocity, &w = body.spin;
-    const Pack x = Pack(s.arm_x + k * kPackWidth) + lane_numbers();
-    at[0] = Pack(v.x() - w.z() * s.arm_y + (D == 3 ? w.y() * s.arm_z : 0.0));
-    at[1] = Pack(v.y() - (D == 3 ? w.x() * s.arm_z : 0.0)) + Pack(w.z()) * x;
-    if constexpr (D == 3) at[2] = Pack(v.z() + w.x() * s.arm_y) - Pack(w.y()) * x;
-  }
-};
-
-bool same_motion(const Body& a, const Body& b) {
-  return a.velocity == b.velocity && a.spin == b.spin;
-}
+constexpr std::ptrdiff_t kManyBodies = 64;  // from which on it pays to divide them among threads
 
 }  // namespace
 
-CoverMap::CoverMap(const Domain& domain, const Block& cells, const ImmersedWeight& weight)
+CoverMap::CoverMap(const Domain& domain, const Block& cells)
     : domain_(domain),
       cells_(cells),
       d_(domain.dimension()),
-      size_(2 + 2 * d_),
-      weight_(weight),
       blocks_per_row_((cells.size[0] + kPackWidth - 1) / kPackWidth),
-      index_(static_cast<std::size_t>(blocks_per_row_) * cells.size[1] * cells.size[2]) {}
+      index_(static_cast<std::size_t>(blocks_per_row_) * cells.size[1] * cells.size[2] + kRowsEnd),
+      motions_(1) {}
 
 void CoverMap::update(std::span<const Body> bodies) {
-  bool moved = walls_changed_ || bodies.size() != bodies_.size(), changed = moved;
-  walls_changed_ = false;
+  for (std::size_t d = bodies.size(); d < footprints_.size(); ++d) unlink(footprints_[d]);
   footprints_.resize(bodies.size());
-  for (std::size_t d = 0; d < bodies.size() && !changed; ++d)
-    changed = !same_motion(bodies[d], bodies_[d]);
-  bodies_.assign(bodies.begin(), bodies.end());
+  motions_.resize(bodies.size() + 1);
   const auto n = static_cast<std::ptrdiff_t>(bodies.size());
-#pragma omp parallel for schedule(static) reduction(|| : moved) if (bodies.size() >= kManyBodies)
+  std::vector<Footprint::Change> change(bodies.size());
+  bool other_spans = false;
+#pragma omp parallel for schedule(static) reduction(|| : other_spans) if (n >= kManyBodies)
+  for (std::ptrdiff_t d = 0; d < n; ++d) {
+    motions_[d + 1] = {bodies[d].velocity, bodies[d].spin};
+    change[d] = footprints_[d].look(bodies[d], domain_, cells_);
+    if (change[d] == Footprint::Change::Fractions) footprints_[d].write();
+    other_spans = other_spans || change[d] == Footprint::Change::Spans;
+  }
+  if (!other_spans) return;
+  const auto other = [&](std::ptrdiff_t d) { return change[d] == Footprint::Change::Spans; };
   for (std::ptrdiff_t d = 0; d < n; ++d)
-    moved = footprints_[d].update(bodies_[d], domain_, cells_) || moved;
-  if (!moved && !changed) return;
-  if (moved) place_blocks();
-  const auto write_all = [&](auto dimension) {
-    constexpr int D = dimension;
-#pragma omp parallel for schedule(static) if (bodies.size() >= kManyBodies)
-    for (std::ptrdiff_t d = 0; d < n; ++d) write<D>(bodies_[d], footprints_[d]);
-    if (shares_.empty()) return;
-    begin_shared();
-    for (std::ptrdiff_t d = 0; d < n; ++d) share<D>(bodies_[d], footprints_[d]);
-    finish_shared();
-  };
-  if (d_ == 2)
-    write_all(std::integral_constant<int, 2>{});
-  else
-    write_all(std::integral_constant<int, 3>{});
-  for (const Wall& wall : walls_) write(wall);
+    if (other(d)) unlink(footprints_[d]);
+#pragma omp parallel for schedule(static) if (n >= kManyBodies)
+  for (std::ptrdiff_t d = 0; d < n; ++d)
+    if (other(d)) footprints_[d].write();
+  for (std::ptrdiff_t d = 0; d < n; ++d)
+    if (other(d)) link(footprints_[d], static_cast<std::int32_t>(d + 1));
 }
 
 void CoverMap::add_wall(const Cell3& from, const Cell3& to) {
-  Wall wall{from, to};
+  int begin[3], end[3];
   for (int a = 0; a < 3; ++a) {
-    wall.from[a] = std::max(0, from[a] - cells_.begin[a]);
-    wall.to[a] = std::min(cells_.size[a], to[a] - cells_.begin[a]);
-    if (wall.from[a] >= wall.to[a]) return;  // on other ranks alone
+    begin[a] = std::max(0, from[a] - cells_.begin[a]);
+    end[a] = std::min(cells_.size[a], to[a] - cells_.begin[a]);
+    if (begin[a] >= end[a]) return;  // on other ranks alone
   }
-  walls_.push_back(wall);
-  walls_changed_ = true;
-}
-
-/// Calls f(y, z) for every row of a wall.
-template <class F>
-void CoverMap::each_row(const Wall& wall, F&& f) {
-  for (int z = wall.from[2]; z < wall.to[2]; ++z)
-    for (int y = wall.from[1]; y < wall.to[1]; ++y) f(y, z);
-}
-
-/// Counts a solid in blocks of row (y, z); `share` holds the number until places are given.
-void CoverMap::count(int y, int z, int first_block, int blocks) {
-  Entry* entries = const_cast<Entry*>(&entry(y, z, first_block));
-  for (int k = 0; k < blocks; ++k) ++entries[k].share;
-}
-
-/// Records are numbered in the order in which a sweep meets them: it then reads them one after
-/// another.
-void CoverMap::place_blocks() {
-  std::fill(index_.begin(), index_.end(), Entry{});
-  for (const Footprint& footprint : footprints_)
-    for (const auto& span : footprint.spans()) count(span.y, span.z, span.block, span.blocks);
-  for (const Wall& wall : walls_)
-    each_row(wall, [&](int y, int z) {
-      const int first = wall.from[0] / kPackWidth;
-      count(y, z, first, (wall.to[0] - 1) / kPackWidth - first + 1);
-    });
-  records_ = 0;
-  shares_.clear();
-  for (Entry& e : index_) {
-    if (e.share < 0) continue;
-    e.record = records_++;
-    const bool alone = e.share == 0;
-    e.share = alone ? -1 : static_cast<std::int32_t>(shares_.size());
-    if (!alone) shares_.push_back({{}, e.record});
-  }
-  lanes_.resize(static_cast<std::size_t>(records_) * size_);
-  for (const Wall& wall : walls_)  // a block may hold fluid beside the wall
-    each_row(wall, [&](int y, int z) {
-      for (int b = wall.from[0] / kPackWidth; b <= (wall.to[0] - 1) / kPackWidth; ++b)
-        if (const Entry& e = entry(y, z, b); e.share < 0)
-          std::fill_n(lanes(e.record), size_, Lanes{});
-    });
-}
-
-/// Records of blocks that the body has for itself, complete.
-template <int D>
-void CoverMap::write(const Body& body, const Footprint& footprint) {
-  for (const auto& span : footprint.spans())
-    for (int k = 0; k < span.blocks; ++k) {
-      const Entry& e = entry(span.y, span.z, span.block + k);
-      if (e.share >= 0) continue;
-      auto& b = *reinterpret_cast<CoverBlock<D>*>(lanes(e.record));
-      const Pack eps = load<Pack>(&footprint.fractions()[span.eps + k * kPackWidth]);
-      const Velocity<D> u(body, span, k);
-      const int skipped = k * kPackWidth;
-      store(b.weight.data(), weight_(eps));
-      store(b.layer.data(), layer_of(eps, span.core_begin - skipped, span.core_end - skipped));
-      for (int a = 0; a < D; ++a) store(b.u[a].data(), u.at[a]);
-    }
-}
-
-void CoverMap::begin_shared() {
-  for (Share& s : shares_) {
-    s.eps.fill(0.0);
-    lanes(s.record)[1].fill(1.0);
-    for (int a = 0; a < d_; ++a) velocity(s.record)[a].fill(0.0);
-  }
-}
-
-/// Adds a body to the records of blocks that it shares: sums weighted with ε.
-template <int D>
-void CoverMap::share(const Body& body, const Footprint& footprint) {
-  for (const auto& span : footprint.spans())
-    for (int k = 0; k < span.blocks; ++k) {
-      const Entry& e = entry(span.y, span.z, span.block + k);
-      if (e.share < 0) continue;
-      auto& b = *reinterpret_cast<CoverBlock<D>*>(lanes(e.record));
-      Lanes& sum = shares_[e.share].eps;
-      const Pack eps = load<Pack>(&footprint.fractions()[span.eps + k * kPackWidth]);
-      const Velocity<D> u(body, span, k);
-      const int skipped = k * kPackWidth;
-      const Pack layer = layer_of(eps, span.core_begin - skipped, span.core_end - skipped);
-      using std::min;
-      store(b.layer.data(), min(pack(b.layer), layer));
-      store(sum.data(), pack(sum) + eps);
-      for (int a = 0; a < D; ++a) store(b.u[a].data(), pack(b.u[a]) + eps * u.at[a]);
-    }
-}
-
-void CoverMap::finish_shared() {
-  for (const Share& s : shares_) {
-    Lanes &weight = lanes(s.record)[0], &layers = lanes(s.record)[1];
-    const Pack eps = pack(s.eps);
-    Pack scale(0.0), layer = pack(layers);
-    where(eps > Pack(0.0), scale) = Pack(1.0) / eps;
-    using std::min;
-    where(eps >= Pack(kWhole), layer) = min(layer, Pack(0.0));
-    for (int a = 0; a < d_; ++a) {
-      Lanes& u = velocity(s.record)[a];
-      store(u.data(), scale * pack(u));
-    }
-    store(weight.data(), weight_(eps));
-    store(layers.data(), layer);
-  }
-}
-
-/// A wall cell takes no part in what the bodies do: full bounce-back, whatever else is in the cell.
-void CoverMap::write(const Wall& wall) {
-  each_row(wall, [&](int y, int z) {
-    for (int x = wall.from[0]; x < wall.to[0]; ++x) {
-      const Entry& e = entry(y, z, x / kPackWidth);
-      const int lane = x % kPackWidth;
-      if (e.share >= 0) shares_[e.share].eps[lane] += 1.0;
-      lanes(e.record)[0][lane] = lanes(e.record)[1][lane] = 1.0;
-      for (int a = 0; a < d_; ++a) velocity(e.record)[a][lane] = 0.0;
-    }
-  });
-}
-
-template <int D>
-BodyLoad CoverMap::load_of(const Footprint& footprint) const {
-  Pack sum[D], torque[2 * D - 3];
-  for (Pack& s : sum) s = Pack(0.0);
-  for (Pack& t : torque) t = Pack(0.0);
-  for (const auto& span : footprint.spans())
-    for (int k = 0; k < span.blocks; ++k) {
-      const Entry& e = entry(span.y, span.z, span.block + k);
-      Pack f[D];
-      for (int a = 0; a < D; ++a) f[a] = pack(force(e.record)[a]);
-      if (e.share >= 0) {
-        const Pack eps = load<Pack>(&footprint.fractions()[span.eps + k * kPackWidth]);
-        Pack part(0.0);
-        where(eps > Pack(0.0), part) = eps / pack(shares_[e.share].eps);
-        for (Pack& component : f) component *= part;
+  const int first = begin[0] / kPackWidth, blocks = (end[0] - 1) / kPackWidth - first + 1;
+  auto& wall = walls_.emplace_back();
+  wall.resize(static_cast<std::size_t>(blocks) * (end[1] - begin[1]) * (end[2] - begin[2]));
+  CoverBlock* block = wall.data();
+  for (int z = begin[2]; z < end[2]; ++z)
+    for (int y = begin[1]; y < end[1]; ++y)
+      for (int b = first; b < first + blocks; ++b, ++block) {
+        for (int lane = 0; lane < kPackWidth; ++lane) {
+          const int x = b * kPackWidth + lane;
+          block->cover[lane] = x >= begin[0] && x < end[0] ? kWall : 0.0;
+        }
+        insert(index_[place(y, z, b)], *block);
       }
-      for (int a = 0; a < D; ++a) sum[a] += f[a];
-      const Pack x = Pack(span.arm_x + k * kPackWidth) + lane_numbers();
-      torque[0] += x * f[1] - Pack(span.arm_y) * f[0];  // about z
-      if constexpr (D == 3) {
-        torque[1] += Pack(span.arm_y) * f[2] - Pack(span.arm_z) * f[1];
-        torque[2] += Pack(span.arm_z) * f[0] - x * f[2];
-      }
+}
+
+/// Blocks with several solids list them in the order of the bodies, walls first: what a run has
+/// gone through before leaves no trace in a sum.
+void CoverMap::insert(CoverBlock*& at, CoverBlock& block) {
+  CoverBlock** here = &at;
+  while (*here && (*here)->motion <= block.motion) here = &(*here)->next;
+  block.next = *here;
+  *here = &block;
+}
+
+void CoverMap::link(Footprint& footprint, std::int32_t motion) {
+  for (const auto& span : footprint.spans())
+    for (int k = 0; k < span.blocks; ++k) {
+      CoverBlock& block = footprint.blocks()[span.first + k];
+      block.motion = motion;
+      insert(index_[place(span.y, span.z, span.block + k)], block);
     }
-  using std::experimental::reduce;
-  if constexpr (D == 2)
-    return {{reduce(sum[0]), reduce(sum[1])}, {0.0, 0.0, reduce(torque[0])}};
-  else
-    return {{reduce(sum[0]), reduce(sum[1]), reduce(sum[2])},
-            {reduce(torque[1]), reduce(torque[2]), reduce(torque[0])}};
+}
+
+void CoverMap::unlink(Footprint& footprint) {
+  for (const auto& span : footprint.spans())
+    for (int k = 0; k < span.blocks; ++k) {
+      CoverBlock& block = footprint.blocks()[span.first + k];
+      CoverBlock** here = &index_[place(span.y, span.z, span.block + k)];
+      while (*here != &block) here = &(*here)->next;
+      *here = block.next;
+    }
+}
+
+template <int D>
+CoverMap::Shared<D> CoverMap::merge(const CoverBlock& first) const {
+  Shared<D> all;
+  for (Pack& u : all.u) u = Pack(0.0);
+  Pack sum(0.0);
+  Pack::mask_type core(false), wall(false);
+  for (const CoverBlock* block = &first; block; block = block->next) {
+    const Pack cover = load<Pack>(block->cover.data()), eps = fraction_of(cover);
+    core = core || cover == Pack(kCore);
+    wall = wall || cover == Pack(kWall);
+    sum += eps;
+    Pack u[D];
+    velocity_in<D>(*block, motion(*block), u);
+    for (int a = 0; a < D; ++a) all.u[a] += eps * u[a];
+  }
+  all.scale = Pack(0.0);
+  where(sum > Pack(0.0), all.scale) = Pack(1.0) / sum;
+  all.cover = fraction_of(sum);
+  where(core, all.cover) = Pack(kCore);
+  where(wall, all.cover) = Pack(kWall);
+  for (Pack& u : all.u) {
+    u *= all.scale;
+    where(wall, u) = Pack(0.0);
+  }
+  return all;
+}
+
+template <int D>
+void CoverMap::split(CoverBlock& first, const Pack& scale, const Pack (&force)[D]) {
+  for (CoverBlock* block = &first; block; block = block->next) {
+    const Pack part = scale * fraction_of(load<Pack>(block->cover.data()));
+    Pack f[D];
+    for (int a = 0; a < D; ++a) f[a] = part * force[a];
+    keep_force<D>(*block, f);
+  }
+}
+
+template CoverMap::Shared<2> CoverMap::merge<2>(const CoverBlock&) const;
+template CoverMap::Shared<3> CoverMap::merge<3>(const CoverBlock&) const;
+template void CoverMap::split<2>(CoverBlock&, const Pack&, const Pack (&)[2]);
+template void CoverMap::split<3>(CoverBlock&, const Pack&, const Pack (&)[3]);
+
+template <int D>
+BodyLoad CoverMap::load_of(std::span<const CoverBlock> blocks) {
+  double force[3] = {}, torque[3] = {};
+  for (const CoverBlock& b : blocks) {
+    const auto [fx, fy, moment_y, fz, moment_z] = b.sums;
+    const double x = b.arm[0], y = b.arm[1], z = b.arm[2];
+    force[0] += fx;
+    force[1] += fy;
+    torque[2] += x * fy + moment_y - y * fx;
+    if constexpr (D == 3) {
+      force[2] += fz;
+      torque[0] += y * fz - z * fy;
+      torque[1] += z * fx - x * fz - moment_z;
+    }
+  }
+  return {{force[0], force[1], force[2]}, {torque[0], torque[1], torque[2]}};
 }
 
 std::vector<BodyLoad> CoverMap::loads() const {
-  std::vector<BodyLoad> result(bodies_.size());
-  const auto n = static_cast<std::ptrdiff_t>(bodies_.size());
-#pragma omp parallel for schedule(static) if (bodies_.size() >= kManyBodies)
+  std::vector<BodyLoad> result(footprints_.size());
+  const auto n = static_cast<std::ptrdiff_t>(footprints_.size());
+#pragma omp parallel for schedule(static) if (n >= kManyBodies)
   for (std::ptrdiff_t d = 0; d < n; ++d)
-    result[d] = d_ == 2 ? load_of<2>(footprints_[d]) : load_of<3>(footprints_[d]);
+    result[d] = d_ == 2 ? load_of<2>(footprints_[d].blocks()) : load_of<3>(footprints_[d].blocks());
   return result;
 }
 
-double CoverMap::solid_fraction(int x, int y, int z) const {
-  const Entry& e = entry(y, z, x / kPackWidth);
+CoverMap::Cell CoverMap::cell(int x, int y, int z) const {
+  const CoverBlock* first = row(y, z)[x / kPackWidth];
+  if (!first) return {0.0, Vec3()};
   const int lane = x % kPackWidth;
-  if (e.record < 0) return 0.0;
-  if (e.share >= 0) return std::min(1.0, shares_[e.share].eps[lane]);
-  return weight_.fraction(lanes(e.record)[0][lane]);
+  const auto of = [&](const auto& shared) {
+    Cell cell{shared.cover[lane], Vec3()};
+    for (int a = 0; a < d_; ++a) cell.velocity[a] = shared.u[a][lane];
+    return cell;
+  };
+  return d_ == 2 ? of(merge<2>(*first)) : of(merge<3>(*first));
+}
+
+double CoverMap::solid_fraction(int x, int y, int z) const {
+  double sum = 0.0;
+  for (const CoverBlock* b = row(y, z)[x / kPackWidth]; b; b = b->next)
+    sum += fraction_of(b->cover[x % kPackWidth]);
+  return std::min(sum, 1.0);
+}
+
+std::size_t CoverMap::covered_blocks() const {
+  return static_cast<std::size_t>(index_.size() - std::ranges::count(index_, nullptr));
 }
 
 std::size_t CoverMap::bytes() const {
-  return index_.size() * sizeof index_[0] + lanes_.size() * sizeof(Lanes) +
-         shares_.size() * sizeof(Share);
+  std::size_t blocks = 0;
+  for (const Footprint& f : footprints_) blocks += f.blocks().size();
+  for (const auto& wall : walls_) blocks += wall.size();
+  return index_.size() * sizeof index_[0] + blocks * sizeof(CoverBlock);
 }
 
 }  // namespace lbm

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "lbm_solver/base/simd.h"
 #include "lbm_solver/field/domain.h"
 #include "lbm_solver/immersed/body.h"
+#include "lbm_solver/immersed/cover_block.h"
 
 namespace lbm {
 
@@ -19,42 +19,55 @@ inline constexpr double kCoreDepth = 2.0;
 /// restarts exact, and the same on every rank. It moves a body by 0.004 cells at most.
 inline constexpr double kSnap = 1.0 / 128.0;
 
-/// The cells of a rank that one body covers, as spans of SIMD blocks with a solid fraction a lane,
-/// its periodic images included.
+/// The cells of a rank that one body covers, as spans of SIMD blocks, its periodic images included.
 class Footprint {
  public:
-  /// Whole SIMD blocks of one row. Lanes that the body does not cover have fraction 0.
+  /// Blocks of one row. Lanes that the body does not cover have fraction 0.
   struct Span {
     int y, z, block;  ///< row, first block; of the rank's cells
     int blocks;
-    int eps;                   ///< index of the fraction of the first lane in `fractions`
+    int first;                 ///< index of the first block in blocks()
     int core_begin, core_end;  ///< lanes of the core, counted from the first
     /// Centre of the first lane's cell minus that of the covering image.
     double arm_x, arm_y, arm_z;
 
     int x() const { return block * kPackWidth; }       ///< cell of the first lane
     int count() const { return blocks * kPackWidth; }  ///< lanes
+    bool same_blocks(const Span& s) const {
+      return y == s.y && z == s.z && block == s.block && blocks == s.blocks;
+    }
   };
+  enum class Change { None, Fractions, Spans };
 
-  /// Computes the spans anew unless the body is where it was (to kSnap).
-  /// @return whether anything changed
-  bool update(const Body& body, const Domain& domain, const Block& cells);
+  /// Looks what a body's place changes; spans and blocks stay as they are until write().
+  Change look(const Body& body, const Domain& domain, const Block& cells);
+  /// Spans and blocks of the place that was looked at. Where spans do not change, blocks stay where
+  /// they are, linked as they are.
+  void write();
+
+  /// Both at once. @return whether anything changed
   bool update(const Body& body, const Domain& domain) {
-    return update(body, domain, Block::whole(domain));
+    const bool changed = look(body, domain, Block::whole(domain)) != Change::None;
+    if (changed) write();
+    return changed;
   }
 
   const std::vector<Span>& spans() const { return spans_; }
-  const std::vector<double>& fractions() const { return fractions_; }
+  std::vector<CoverBlock>& blocks() { return blocks_; }
+  const std::vector<CoverBlock>& blocks() const { return blocks_; }
 
  private:
-  void add_image(const Vec3& centre, double radius, const Block& cells, bool sphere);
-  void add_row(const Span& row, int count, double across2, double radius, bool sphere);
-  void add_outside(const Vec3& centre, double radius, const Block& cells, bool sphere);
+  void find_image(const Vec3& centre, const Block& cells);
+  void find_outside(const Vec3& centre, const Block& cells);
+  Pack fractions(const Span& span, int k) const;
+  void write(const Span& span);
+
   Vec3 centre_;
   double radius_ = -1.0;
-  bool hollow_ = false;
-  std::vector<Span> spans_;
-  std::vector<double> fractions_;
+  bool hollow_ = false, sphere_ = false;
+  int row_end_ = 0;                 ///< cells of a row of the rank
+  std::vector<Span> spans_, next_;  ///< as they are; as they will be
+  std::vector<CoverBlock> blocks_;
 };
 
 }  // namespace lbm

@@ -32,8 +32,8 @@ constexpr SolidTerm::Parts mix(const SolidTerm::Parts& a, const SolidTerm::Parts
           a.solid + part * (b.solid - a.solid)};
 }
 constexpr double kForget = 0.05;
-constexpr SolidTerm::Halves kWhole{mix(kNobleTorczynski.even, kEquilibrium.even, kForget),
-                                   mix(kNobleTorczynski.odd, kEquilibrium.odd, kForget)};
+constexpr SolidTerm::Halves kBelowSurface{mix(kNobleTorczynski.even, kEquilibrium.even, kForget),
+                                          mix(kNobleTorczynski.odd, kEquilibrium.odd, kForget)};
 
 }  // namespace
 
@@ -45,8 +45,8 @@ SolidTerm solid_term(const std::string& name, double tau) {
   // outside), but a whole cell takes the solid's velocity in one step, so that the force contains
   // exactly the inertia of the fluid inside, which the coupling gives back exactly; and the core
   // forgets, so that nothing rings there.
-  if (name == "layered_holdych") return {kHoldych, kWhole, kEquilibrium};
-  if (name == "layered_noble_torczynski") return {kNobleTorczynski, kWhole, kEquilibrium};
+  if (name == "layered_holdych") return {kHoldych, kBelowSurface, kEquilibrium};
+  if (name == "layered_noble_torczynski") return {kNobleTorczynski, kBelowSurface, kEquilibrium};
   std::string known;
   for (const std::string& n : known_solid_terms()) known += " " + n;
   throw std::invalid_argument("no solid term '" + name + "'; known:" + known);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lbm_solver/collision/forcing.h"
+#include "lbm_solver/immersed/cover_block.h"
 #include "lbm_solver/immersed/weight.h"
 
 namespace lbm {
@@ -78,13 +79,13 @@ class TwoEquilibria {
 /// drove the fluid.
 class CoveredCollision {
  public:
-  CoveredCollision(const SolidTerm& term, WeightRule rule) : term_(term), resistance_(rule) {}
+  CoveredCollision(const SolidTerm& term, const ImmersedWeight& weight)
+      : term_(term), weight_(weight) {}
 
   /// What the cover map knows of a cell.
   template <class L, class V>
   struct Cell {
-    V weight;         ///< B; the solid fraction where the viscosity differs from cell to cell
-    V layer;          ///< 1 surface, 0 whole, -1 core
+    V cover;          ///< as in CoverBlock
     Vector<L, V> us;  ///< solid velocity at the cell centre, lattice units
   };
 
@@ -97,10 +98,10 @@ class CoveredCollision {
     const Moments<L, V> m = moments<L>(f);
     const V rho = m.drho + V(1.0);
     const Vector<L, V> u = velocity<L>(m, NoForce<L>({}));
-    V weight = cell.weight;
-    if constexpr (Collision::turbulent)
-      weight = resistance_.weight(weight, collide.relaxation_time(f, m) - V(0.5));
-    const auto surface = cell.layer > V(0.5), core = cell.layer < V(-0.5);
+    V tau(weight_.tau);
+    if constexpr (Collision::turbulent) tau = collide.relaxation_time(f, m);
+    const V weight = weight_(fraction_of(cell.cover), tau);
+    const auto surface = cell.cover < V(kWhole), core = cell.cover == V(kCore);
     const auto pick = [&](const double SolidTerm::Parts::*part,
                           const SolidTerm::Parts SolidTerm::Halves::*half)
         __attribute__((always_inline)) {
@@ -163,7 +164,7 @@ class CoveredCollision {
 
  private:
   SolidTerm term_;
-  ResistanceOfWeight resistance_;
+  ImmersedWeight weight_;
 };
 
 }  // namespace lbm

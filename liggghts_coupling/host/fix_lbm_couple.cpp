@@ -122,8 +122,8 @@ void FixLbmCouple::setup(int vflag) {
   }
   if (Coupling::instance().over)
     fail(
-        "the fluid has reached its end and left: no run may follow; let the last one end there "
-        "with 'run ${solid_steps_total} upto'");
+        "the fluid has reached its end and left: no run may follow; let all together have "
+        "${solid_steps_total} steps");
   if (!set_up_)
     begin();
   else

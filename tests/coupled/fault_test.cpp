@@ -216,6 +216,7 @@ TEST(Damage, FewerLoadsThanParticles) {
                                     "x_hi 1 -var y_lo 0 -var y_hi 1 -var z_lo -0.5 -var z_hi "
                                     "0.5 -var particles 1 -var particle1_x 0.5 -var "
                                     "particle1_y 0.5 -var particle1_vx 0 -var particle1_vy 0 "
+                                    "-var particle1_interval 0 "
                                     "-var diameter_max 0.1 -var density_max 1000 -var "
                                     "contact_stiffness 1e5 -var solid_step 1e-3 -var substeps "
                                     "10 -var solid_steps_total 100"}),

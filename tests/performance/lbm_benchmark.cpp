@@ -123,7 +123,7 @@ void aos_benchmark(benchmark::State& state, const Entry& e) {
 void particle_benchmark(benchmark::State& state, int count, const std::string& part) {
   omp_set_num_threads(1);
   const int side = static_cast<int>(std::round(std::sqrt(count))), n = 16 * side;
-  CoverMap cover({n, n, Side::Periodic, Side::Periodic}, {WeightRule::Viscous, 0.8});
+  CoverMap cover({n, n, Side::Periodic, Side::Periodic});
   std::vector<Body> discs;
   for (int i = 0; i < count; ++i)
     discs.push_back(

@@ -204,11 +204,15 @@ Cell NaiveLattice::collided(std::size_t cell) {
   const Macroscopic m = macroscopic(f);
   const NaiveCover& cover = cover_[cell];
   const Cell eq = equilibrium(m.rho, m.j / m.rho);  // without the body force
-  const Cell omega_s = cover.weight > 0.0 ? solid_term(f, eq, m.rho, cover) : Cell{};
+  const Cell omega_s = cover.eps > 0.0 ? solid_term(f, eq, m.rho, cover) : Cell{};
   const Cell post = fluid(f);
-  double weight = cover.weight;
-  if (choice_.turbulence == "smagorinsky")  // B(ε, τ*) of this cell, or B = ε
-    weight = lbm::ImmersedWeight{choice_.weight, tau(f)}(weight);
+  double weight = cover.eps;
+  if (choice_.weight != lbm::WeightRule::Fraction) {
+    const bool les = choice_.turbulence == "smagorinsky";
+    const double s = (les ? tau(f) : choice_.parameters.tau) - 0.5;
+    const double c = choice_.weight == lbm::WeightRule::Balanced ? 1.0 - 0.5 * s : 1.0;
+    weight = cover.eps * s / ((1.0 - cover.eps) * c + s);
+  }
   Cell out{};
   Vec3 gain;
   for (int i = 0; i < l_.Q; ++i) {

@@ -16,7 +16,7 @@ using lbm::Vec3;
 
 /// What covers a cell.
 struct NaiveCover {
-  double weight = 0.0;  ///< B, with a turbulence model the solid fraction; 0: pure fluid
+  double eps = 0.0;     ///< solid fraction; 0: pure fluid
   bool whole = false;   ///< covered whole
   bool core = false;    ///< deep inside
   Vec3 velocity;

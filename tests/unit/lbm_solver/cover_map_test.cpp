@@ -35,26 +35,76 @@ Fluid stirred(std::vector<Body> discs) {
 }
 
 TEST(ImmersedWeight, HasItsLimits) {
-  const ImmersedWeight viscous{WeightRule::Viscous, 0.8}, fraction{WeightRule::Fraction};
-  EXPECT_EQ(viscous(0.0), 0.0);
-  EXPECT_EQ(viscous(1.0), 1.0);
-  EXPECT_EQ(viscous(1.7), 1.0);  // the sum of two solids may exceed one
-  EXPECT_EQ(fraction(1.7), 1.0);
-  EXPECT_NEAR(viscous(0.5), 0.5 * 0.3 / 0.8, 1e-15);
-  EXPECT_EQ(fraction(0.3), 0.3);
+  const ImmersedWeight viscous(WeightRule::Viscous), fraction(WeightRule::Fraction);
+  EXPECT_EQ(viscous(0.0, 0.8), 0.0);
+  EXPECT_EQ(viscous(1.0, 0.8), 1.0);
+  EXPECT_NEAR(viscous(0.5, 0.8), 0.5 * 0.3 / 0.8, 1e-15);
+  EXPECT_NEAR(fraction(0.3, 0.8), 0.3, 1e-16);
 }
 
-TEST(CoverMap, LoadsOfSharedCellsAddUpToTheWholeForce) {
-  const Fluid fluid = stirred(cluster());
-  Vec3 whole(0.0, 0.0), shared(0.0, 0.0);
+TEST(CoverMap, SolidsThatShareACellAreOneThereAndAWallIsAWall) {
+  CoverMap cover(kDomain);
+  const auto discs = cluster();
+  cover.update(discs);
+  double together = 0.0;
+  for (const Body& disc : discs) {
+    CoverMap alone(kDomain);
+    alone.update(std::vector<Body>{disc});
+    together += alone.solid_fraction(24, 22);
+  }
+  EXPECT_GT(together, 1.0);  // two of the discs overlap there
+  EXPECT_EQ(cover.solid_fraction(24, 22), 1.0);
+  EXPECT_GT(cover.cell(24, 22).velocity.norm(), 0.0);
+  cover.add_wall({24, 20, 0}, {30, 23, 1});
+  EXPECT_EQ(cover.cell(24, 22).cover, kWall);
+  EXPECT_EQ(cover.cell(24, 22).velocity.norm(), 0.0);
+  EXPECT_EQ(cover.solid_fraction(24, 22), 1.0);
+  EXPECT_NE(cover.cell(23, 22).cover, kWall);
+}
+
+TEST(CoverMap, WhatWasThereBeforeLeavesNoTrace) {
+  const auto discs = cluster();
+  CoverMap fresh(kDomain), used(kDomain);
+  fresh.update(discs);
+  for (int step = 25; step >= 0; --step) {  // comes from elsewhere, each at a speed of its own
+    auto before = discs;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      before[i].centre += step * Vec3(0.37 + 0.11 * i, 0.53 - 0.4 * i);
+    if (step % 7 == 3) before.pop_back();  // the last one is away for a while
+    used.update(before);
+  }
   for (int y = 0; y < kDomain.ny; ++y)
-    for (int b = 0; b < fluid.cover()->blocks_per_row(); ++b)
-      if (const auto* block = fluid.cover()->block<2>(y, 0, b))
-        for (int lane = 0; lane < kPackWidth; ++lane)
-          whole += Vec3(block->force[0][lane], block->force[1][lane]);
-  for (const BodyLoad& load : fluid.loads()) shared += load.force;
-  EXPECT_NEAR((whole - shared).norm(), 0.0, 1e-14);
-  EXPECT_GT(whole.norm(), 1e-3);
+    for (int x = 0; x < kDomain.nx; ++x) {
+      EXPECT_EQ(used.cell(x, y).cover, fresh.cell(x, y).cover) << x << ' ' << y;
+      EXPECT_EQ(used.cell(x, y).velocity, fresh.cell(x, y).velocity) << x << ' ' << y;
+    }
+  EXPECT_EQ(used.covered_blocks(), fresh.covered_blocks());
+}
+
+TEST(CoverMap, SolidsShareTheForceOfACellByTheirFractions) {
+  CoverMap cover(kDomain);
+  cover.update(cluster());
+  int shared = 0;
+  for (int y = 0; y < kDomain.ny; ++y)
+    for (int b = 0; b < cover.blocks_per_row(); ++b) {
+      CoverBlock* const first = cover.row(y, 0)[b];
+      if (!first || !first->next) continue;
+      ++shared;
+      const auto all = cover.merge<2>(*first);
+      double whole[2] = {}, parts[2] = {}, by_hand = 0.0;
+      Pack force[2] = {Pack(0.3) * lane_numbers() + Pack(1.0), Pack(-0.2) * lane_numbers()};
+      for (int lane = 0; lane < kPackWidth; ++lane) {
+        if (all.scale[lane] == 0.0) continue;
+        for (int a = 0; a < 2; ++a) whole[a] += force[a][lane];
+        by_hand += force[0][lane] * fraction_of(first->cover[lane]) * all.scale[lane];
+      }
+      CoverMap::split<2>(*first, all.scale, force);
+      EXPECT_NEAR(first->sums[0], by_hand, 1e-14);
+      for (auto* block = first; block; block = block->next)
+        for (int a = 0; a < 2; ++a) parts[a] += block->sums[a];
+      for (int a = 0; a < 2; ++a) EXPECT_NEAR(parts[a], whole[a], 1e-14);
+    }
+  EXPECT_GT(shared, 5);
 }
 
 TEST(CoverMap, LoadsDoNotDependOnTheOrderOfTheDiscs) {
@@ -70,7 +120,7 @@ TEST(CoverMap, LoadsDoNotDependOnTheOrderOfTheDiscs) {
 }
 
 TEST(CoverMap, DiscsComeAndGo) {
-  CoverMap cover(kDomain, {WeightRule::Viscous, 0.8});
+  CoverMap cover(kDomain);
   cover.update({});
   EXPECT_EQ(cover.covered_blocks(), 0U);
   const auto discs = cluster();
@@ -85,7 +135,7 @@ TEST(CoverMap, DiscsComeAndGo) {
 }
 
 TEST(CoverMap, NextCoveredSkipsPureFluid) {
-  CoverMap cover(kDomain, {WeightRule::Viscous, 0.8});
+  CoverMap cover(kDomain);
   cover.update(std::vector<Body>{{1, {40.5, 20.0}, 2.0, {0, 0}}});
   EXPECT_EQ(cover.next_covered(20, 0, 0), 38 / kPackWidth);
   EXPECT_EQ(cover.next_covered(3, 0, 0), cover.blocks_per_row());

@@ -13,6 +13,14 @@ namespace {
 
 using namespace lbm;
 
+/// What covers a lane of a span.
+double cover_of(const Footprint& footprint, const Footprint::Span& span, int lane) {
+  return footprint.blocks()[span.first + lane / kPackWidth].cover[lane % kPackWidth];
+}
+double fraction_in(const Footprint& footprint, const Footprint::Span& span, int lane) {
+  return fraction_of(cover_of(footprint, span, lane));
+}
+
 /// Dense map of fractions [y][x]; images that share a cell add up.
 std::vector<double> fraction_map(const Body& disc, const Domain& d) {
   Footprint footprint;
@@ -22,7 +30,7 @@ std::vector<double> fraction_map(const Body& disc, const Domain& d) {
     for (int k = 0; k < span.count(); ++k)
       if (span.x() + k < d.nx)
         map[static_cast<std::size_t>(span.y) * d.nx + span.x() + k] +=
-            footprint.fractions()[span.eps + k];
+            fraction_in(footprint, span, k);
   return map;
 }
 
@@ -79,7 +87,8 @@ TEST(SphereFraction, MapAddsUpToTheVolumeInsideAndAcrossACorner) {
     Footprint footprint;
     footprint.update({1, centre, 6.3, Vec3()}, box);
     double volume = 0.0;
-    for (const double eps : footprint.fractions()) volume += eps;
+    for (const auto& block : footprint.blocks())
+      for (const double cover : block.cover) volume += fraction_of(cover);
     EXPECT_NEAR(volume / (4.0 / 3.0 * std::numbers::pi * 6.3 * 6.3 * 6.3), 1.0, 2e-3);
   }
 }
@@ -134,9 +143,12 @@ TEST(Footprint, ArmsPointFromTheImageToTheCell) {
   double area = 0.0;
   for (const auto& span : footprint.spans())
     for (int k = 0; k < span.count(); ++k) {
-      if (footprint.fractions()[span.eps + k] == 0.0) continue;
+      if (fraction_in(footprint, span, k) == 0.0) continue;
       EXPECT_LT(std::hypot(span.arm_x + k, span.arm_y), 3.0 + 0.75);
-      area += footprint.fractions()[span.eps + k];
+      area += fraction_in(footprint, span, k);
+      const CoverBlock& block = footprint.blocks()[span.first + k / kPackWidth];
+      EXPECT_EQ(block.arm[0] + k % kPackWidth, span.arm_x + k);  // exact, though a float
+      EXPECT_EQ(block.arm[1], span.arm_y);
     }
   EXPECT_NEAR(area, 9.0 * std::numbers::pi, 0.1);
 }
@@ -152,9 +164,7 @@ TEST(Footprint, TheCoreIsWholeAndDeep) {
       const double distance = std::hypot(span.arm_x + k, span.arm_y);
       const bool in_core = k >= span.core_begin && k < span.core_end;
       EXPECT_EQ(in_core, distance < 9.6 - kCoreDepth) << distance;
-      if (in_core) {
-        EXPECT_EQ(footprint.fractions()[span.eps + k], 1.0);
-      }
+      EXPECT_EQ(in_core, cover_of(footprint, span, k) == kCore);
       core += in_core;
     }
   EXPECT_GT(core, 150);

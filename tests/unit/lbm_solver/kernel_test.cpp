@@ -56,26 +56,12 @@ void randomise(Fluid& fluid, test::NaiveLattice& naive) {
   });
 }
 
-/// Covered cells of a block at run time.
-struct AnyBlock {
-  const Lanes* lanes = nullptr;  // weight, layer, velocity, force
-  int d = 2;
-};
-AnyBlock block_of(const CoverMap& cover, int d, int y, int z, int b) {
-  if (d == 2) return {reinterpret_cast<const Lanes*>(cover.block<2>(y, z, b)), 2};
-  return {reinterpret_cast<const Lanes*>(cover.block<3>(y, z, b)), 3};
-}
-
-/// Copies the cover map's records cell by cell, so that only the sweep is under test.
+/// Copies the cover map cell by cell, so that only the sweep is under test.
 void copy_cover(const CoverMap& cover, const Domain& d, test::NaiveLattice& naive) {
   each_cell(d, [&](int x, int y, int z) {
-    const AnyBlock block = block_of(cover, d.dimension(), y, z, x / kPackWidth);
-    const int lane = x % kPackWidth;
-    naive.cover(x, y, z) = {};
-    if (!block.lanes || block.lanes[0][lane] <= 0.0) return;
-    auto& to = naive.cover(x, y, z);
-    to = {block.lanes[0][lane], block.lanes[1][lane] <= 0.0, block.lanes[1][lane] < 0.0, Vec3()};
-    for (int a = 0; a < block.d; ++a) to.velocity[a] = block.lanes[2 + a][lane];
+    const CoverMap::Cell cell = cover.cell(x, y, z);
+    const double eps = cover.solid_fraction(x, y, z);
+    naive.cover(x, y, z) = {eps, eps >= 1.0 - 1e-12, cell.cover == kCore, cell.velocity};
   });
 }
 
@@ -90,15 +76,26 @@ double largest_difference(Fluid& fluid, test::NaiveLattice& naive) {
   return largest;
 }
 
+/// Of what the solids of a SIMD block bear together: force, and its moment about the first cell.
 double largest_force_difference(const CoverMap& cover, const Domain& d, test::NaiveLattice& naive) {
   double largest = 0.0;
-  each_cell(d, [&](int x, int y, int z) {
-    const AnyBlock block = block_of(cover, d.dimension(), y, z, x / kPackWidth);
-    Vec3 force;
-    for (int a = 0; block.lanes && a < block.d; ++a)
-      force[a] = block.lanes[2 + block.d + a][x % kPackWidth];
-    largest = std::max(largest, (force - naive.force(x, y, z)).cwiseAbs().maxCoeff());
-  });
+  for (int z = 0; z < d.nz; ++z)
+    for (int y = 0; y < d.ny; ++y)
+      for (int b = 0; b < cover.blocks_per_row(); ++b) {
+        Vec3 difference, moment_difference;
+        for (const CoverBlock* block = cover.row(y, z)[b]; block; block = block->next) {
+          difference += block->force();
+          moment_difference += block->moment();
+        }
+        for (int lane = 0; lane < kPackWidth && b * kPackWidth + lane < d.nx; ++lane) {
+          Vec3 force = naive.force(b * kPackWidth + lane, y, z);
+          difference -= force;
+          force.x() = 0.0;
+          moment_difference -= lane * force;
+        }
+        largest = std::max(
+            {largest, difference.cwiseAbs().maxCoeff(), moment_difference.cwiseAbs().maxCoeff()});
+      }
   return largest;
 }
 
