@@ -91,8 +91,8 @@ inline Pack lane_numbers() {
 /// lanes: in each of three rounds neighbours are added, which makes one pack of two.
 template <class... Packs>
 [[gnu::always_inline]] inline void store_sums(double* to, const Packs&... packs) {
-  constexpr int n = sizeof...(Packs);
 #if defined(__AVX512F__)
+  constexpr int n = sizeof...(Packs);
   using Vector = double [[gnu::vector_size(64)]];
   static_assert(n <= 8 && kPackWidth == 8);
   const Vector in[8] = {reinterpret_cast<Vector>(static_cast<__m512d>(packs))...};
