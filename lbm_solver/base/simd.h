@@ -93,9 +93,9 @@ template <class... Packs>
 [[gnu::always_inline]] inline void store_sums(double* to, const Packs&... packs) {
 #if defined(__AVX512F__)
   constexpr int n = sizeof...(Packs);
-  using Vector = double [[gnu::vector_size(64)]];
+  using Vector = __m512d;
   static_assert(n <= 8 && kPackWidth == 8);
-  const Vector in[8] = {reinterpret_cast<Vector>(static_cast<__m512d>(packs))...};
+  const Vector in[8] = {static_cast<Vector>(packs)...};
   Vector pairs[4] = {}, fours[2];
   for (int i = 0; i < (n + 1) / 2; ++i) {
     const Vector &a = in[2 * i], &b = in[2 * i + 1];
@@ -109,7 +109,7 @@ template <class... Packs>
   }
   const Vector all = __builtin_shufflevector(fours[0], fours[1], 0, 1, 2, 3, 8, 9, 10, 11) +
                      __builtin_shufflevector(fours[0], fours[1], 4, 5, 6, 7, 12, 13, 14, 15);
-  _mm512_mask_storeu_pd(to, (1U << n) - 1U, reinterpret_cast<__m512d>(all));
+  _mm512_mask_storeu_pd(to, (1U << n) - 1U, all);
 #else
   ((*to++ = std::experimental::reduce(packs)), ...);
 #endif

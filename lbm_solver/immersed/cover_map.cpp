@@ -189,7 +189,7 @@ std::size_t CoverMap::bytes() const {
   std::size_t blocks = 0;
   for (const Footprint& f : footprints_) blocks += f.blocks().size();
   for (const auto& wall : walls_) blocks += wall.size();
-  return index_.size() * sizeof index_[0] + blocks * sizeof(CoverBlock);
+  return std::span(index_).size_bytes() + blocks * sizeof(CoverBlock);
 }
 
 }  // namespace lbm

@@ -16,9 +16,9 @@ using lbm::Vec3;
 
 /// What covers a cell.
 struct NaiveCover {
-  double eps = 0.0;     ///< solid fraction; 0: pure fluid
-  bool whole = false;   ///< covered whole
-  bool core = false;    ///< deep inside
+  double eps = 0.0;    ///< solid fraction; 0: pure fluid
+  bool whole = false;  ///< covered whole
+  bool core = false;   ///< deep inside
   Vec3 velocity;
 };
 
