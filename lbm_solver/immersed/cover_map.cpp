@@ -2,11 +2,15 @@
 #include "lbm_solver/immersed/cover_map.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace lbm {
 namespace {
 
 constexpr std::ptrdiff_t kManyBodies = 64;  // from which on it pays to divide them among threads
+
+// The list of footprints grows: copies would leave the index with blocks that are gone.
+static_assert(std::is_nothrow_move_constructible_v<Footprint>);
 
 }  // namespace
 

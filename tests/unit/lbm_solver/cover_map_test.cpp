@@ -134,6 +134,17 @@ TEST(CoverMap, DiscsComeAndGo) {
   EXPECT_TRUE(cover.loads().empty());
 }
 
+TEST(CoverMap, GrowsByOneDiscAtATime) {
+  CoverMap cover(kDomain);
+  std::vector<Body> discs;
+  for (int i = 0; i < 9; ++i) {
+    discs.push_back({i + 1, {4.0 + 5.0 * i, 20.0}, 2.0, {0, 0}});
+    cover.update(discs);
+    for (int k = 0; k < 9; ++k)
+      EXPECT_EQ(cover.solid_fraction(4 + 5 * k, 20), k <= i ? 1.0 : 0.0) << i << ' ' << k;
+  }
+}
+
 TEST(CoverMap, NextCoveredSkipsPureFluid) {
   CoverMap cover(kDomain);
   cover.update(std::vector<Body>{{1, {40.5, 20.0}, 2.0, {0, 0}}});
