@@ -33,7 +33,7 @@ Populations::Populations(const Lattice& lattice, const Cell3& cells, Precision p
   plane_ = round_up(stride_ * (ny() + 2) * (nz() + 2 * ghost_z_), page) + 9 * line;
   first_ = line;
   bytes_ = static_cast<std::size_t>(round_up(first_ + plane_ * lattice_.Q, page) * size);
-  const bool huge = bytes_ >= 4 * kHugePage;
+  const bool huge = beyond_caches();
   const std::size_t alignment = huge ? kHugePage : kPage;
   bytes_ = (bytes_ + alignment - 1) / alignment * alignment;
   memory_.reset(std::aligned_alloc(alignment, bytes_));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
-#include <experimental/simd>
 
 #include "lbm_solver/base/simd.h"
 #include "lbm_solver/base/vec3.h"

@@ -11,18 +11,20 @@
 namespace lbm {
 
 /// Fetches a row ahead of its sweep into the second-level cache, population by population: in three
-/// dimensions a row's nineteen streams are more than the hardware follows.
+/// dimensions a row's nineteen streams are more than the hardware follows. Populations that lie in
+/// the caches are left alone: there the asking costs more than it gains.
 template <class L, class Real>
 class RowPrefetch {
   static constexpr int kLine = 64 / sizeof(Real);
 
  public:
-  /// @param ahead  numbers between the row and the one to fetch; 0: the row itself once more
+  /// @param ahead  numbers between the row and the one to fetch; 0: none
   RowPrefetch(const EsotericPull::Row<L, Real>& row, int n, std::ptrdiff_t ahead)
       : row_(&row), ahead_(ahead), lines_((n + kLine - 1) / kLine + 1), at_(row.in[0] + ahead) {}
 
   /// To be called for every pack of cells swept.
   [[gnu::always_inline]] void fetch(int lines) {
+    if (ahead_ == 0) return;
     for (int k = 0; k < lines; ++k) {
       __builtin_prefetch(at_, 1, 2);
       at_ += kLine;
@@ -85,11 +87,12 @@ class RowKernel final : public Kernel {
   void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover,
              const Rows& rows) const override {
     const int count = rows.size();
+    const std::ptrdiff_t to_next_row = f.beyond_caches() ? f.stride() : 0;
 #pragma omp for schedule(static) nowait
     for (int r = 0; r < count; ++r) {
       const auto [y, z] = rows[r];
       const Row row = stream.open<L, Real>(f, y, z);
-      const std::ptrdiff_t ahead = r + 1 < count ? f.stride() : 0;
+      const std::ptrdiff_t ahead = r + 1 < count ? to_next_row : 0;
       RowPrefetch<L, Real> prefetch(row, f.nx(), ahead);
       if (const int first = cover ? cover->next_covered(y, z, 0) : f.nx();
           first * kPackWidth >= f.nx())
