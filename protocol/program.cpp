@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
 
 namespace protocol {
 
@@ -35,6 +36,15 @@ double seconds_since_signal() {
 double grace() {
   const char* set = std::getenv("BPLBM_GRACE");
   return set ? std::atof(set) : 0.6;
+}
+
+std::string last_error_line(const std::string& program, const std::string& log_file) {
+  std::ifstream log(log_file);
+  std::string line, found;
+  while (std::getline(log, line))
+    if (line.starts_with("ERROR")) found = line;
+  return found.empty() ? program + " stopped with an error; see its output, or give it -log FILE"
+                       : found;
 }
 
 }  // namespace
@@ -99,6 +109,17 @@ Deadline::Deadline(const std::exception& error, const std::string& program, unsi
 
 Deadline::~Deadline() {
   alarm(0);
+}
+
+void end_with_engine(const std::string& program, const std::string& log_file, Channel* channel,
+                     bool lonely) {
+  if (channel && (lonely || channel->local_rank() == 0)) {
+    channel->raise({kFault, last_error_line(program, log_file)});
+    channel->await_farewell(kFarewellSeconds);
+  } else if (channel) {
+    sleep(static_cast<unsigned>(kFarewellSeconds) + 1);  // rank 0 ends the job
+  }
+  abort_job(kFault);
 }
 
 void abort_job(int exit_code) {

@@ -18,6 +18,13 @@ int exit_code_of(const std::exception& error);
 /// @param channel  null before there is a partner
 int leave_after(const std::exception& error, const std::string& program, Channel* channel);
 
+/// Ends a program whose engine has ended itself, as LAMMPS and LIGGGHTS do after an error: tells
+/// the partner the last line of the engine's log that begins with ERROR, and ends the whole MPI
+/// job.
+/// @param lonely  this rank alone comes here; else all of its program do
+[[noreturn]] void end_with_engine(const std::string& program, const std::string& log_file,
+                                  Channel* channel, bool lonely);
+
 /// From now on SIGTERM and SIGINT do not kill at once. mpirun sends SIGTERM to the survivors when a
 /// program of the job dies, and to all when it is told to end.
 void catch_signals();

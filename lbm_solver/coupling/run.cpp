@@ -10,6 +10,7 @@
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/io/checkpoint.h"
 #include "protocol/program.h"
+#include "protocol/solid_parts.h"
 
 namespace lbm {
 namespace {
@@ -86,7 +87,7 @@ RunStart start_of(const RunOptions& options, const Plan& plan, const State& stat
     throw InputError(path(options.restart) + ".h5",
                      "lies at the end of the run: nothing is left to do",
                      "raise --until, or start again without --restart");
-  start.solid_part = solid_checkpoint(path(options.restart), start.interval);
+  start.solid_part = protocol::SolidParts(path(options.restart)).name(start.interval);
   if (!std::filesystem::is_regular_file(start.solid_part))
     throw InputError(start.solid_part, "is missing: the solid's part of the checkpoint",
                      options.restart == "fault"

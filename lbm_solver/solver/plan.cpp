@@ -309,10 +309,6 @@ Plan make_plan(const Scene& s) {
   return plan;
 }
 
-std::string solid_checkpoint(const std::string& prefix, std::int64_t interval) {
-  return fmt::format("{}.{}.solid", prefix, interval);
-}
-
 protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start,
                            const std::optional<Block>& cells) {
   const Vec3 top = s.box.origin + s.box.size;

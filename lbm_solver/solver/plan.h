@@ -53,9 +53,6 @@ struct RunStart {
   std::string solid_part = "none";            ///< the solid's file of the one it goes on from
 };
 
-/// The solid's checkpoint of an interval: the fluid's names the interval that both have.
-std::string solid_checkpoint(const std::string& prefix, std::int64_t interval);
-
 /// What the fluid says to the solid: everything of the plan that both must agree on, and the
 /// variables that its script may use instead of numbers of its own.
 /// @param cells  of this rank, where several share the box

@@ -16,9 +16,7 @@
 #include <write_restart.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
 
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/solid_hello.h"
@@ -143,10 +141,7 @@ void FixLbmCouple::begin() {
   hello.schedule = fluid.schedule;
   hello.features = protocol::kCheckpoints;
   overlapped_ = fluid.schedule == protocol::Schedule::Overlapped;
-  for (const auto& v : fluid.variables) {
-    if (v.name == "checkpoint") checkpoint_ = std::filesystem::absolute(v.value);
-    if (v.name == "restart_file" && interval_ > 0) last_checkpoint_ = v.value;
-  }
+  parts_ = protocol::SolidParts::of(fluid);
   coupling.session->agree(hello);
   coupling.agreed = set_up_ = true;
   first_step_ = step_ = update->ntimestep;
@@ -325,9 +320,8 @@ void FixLbmCouple::settle_again() {
   settling_again_ = false;
 }
 
-/// Leaves this checkpoint and the one before.
 void FixLbmCouple::write_checkpoint() {
-  last_checkpoint_ = write_part(checkpoint_, last_checkpoint_);
+  write_part(*parts_);
   MPI_Barrier(world);  // it is there before any rank says so
 }
 
@@ -343,28 +337,17 @@ void FixLbmCouple::keep_last_state(const std::exception& error) {
     for (int k = 0; k < 3; ++k)
       if (!std::isfinite(atom->x[i][k] + atom->v[i][k] + atom->omega[i][k])) finite = 0;
   MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, world);
-  if (finite) write_part((std::filesystem::path(checkpoint_).parent_path() / "fault").string(), "");
+  if (!finite) return;
+  protocol::SolidParts fault = parts_->beside("fault");
+  write_part(fault);
 }
 
-/// A restart file of this interval, whole or not at all; of the others of that name only `keep`
-/// stays. @return its name
-std::string FixLbmCouple::write_part(const std::string& prefix, const std::string& keep) {
-  const std::string name = fmt::format("{}.{}.solid", prefix, interval_), part = name + ".part";
-  std::string writable = part;
-  LAMMPS_NS::WriteRestart(lmp).write(writable.data());
+/// A restart file of this interval.
+void FixLbmCouple::write_part(protocol::SolidParts& parts) {
+  std::string part = parts.name(interval_) + ".part";
+  LAMMPS_NS::WriteRestart(lmp).write(part.data());
   MPI_Barrier(world);
-  if (comm->me == 0) {
-    if (std::rename(part.c_str(), name.c_str()) != 0)
-      error->one(FLERR, ("fix lbm/couple: the checkpoint " + name + " cannot be written").c_str());
-    const auto folder = std::filesystem::path(prefix).parent_path();
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      const std::string found = entry.path().string();
-      if (found.starts_with(prefix + ".") && found.ends_with(".solid") && found != name &&
-          found != keep)
-        std::filesystem::remove(entry.path());
-    }
-  }
-  return name;
+  if (comm->me == 0) parts.complete(part, interval_);
 }
 
 // ---- held loads travel with their particles ---------------------------------------------------

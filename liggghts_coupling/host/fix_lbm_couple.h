@@ -3,10 +3,12 @@
 
 #include <fix.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "protocol/session.h"
+#include "protocol/solid_parts.h"
 
 namespace dem {
 
@@ -59,7 +61,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void settle_again();
   void write_checkpoint();
   void keep_last_state(const std::exception& error);
-  std::string write_part(const std::string& prefix, const std::string& keep);
+  void write_part(protocol::SolidParts& parts);
   [[noreturn]] void fail(const std::string& text) const;
 
   int substeps_ = 0;
@@ -73,10 +75,9 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   bool overlapped_ = false;  ///< loads are taken at the end of their interval
   bool underway_ = false;    ///< loads of the states sent last have not been taken
   bool set_up_ = false;
-  bool settling_again_ = false;          ///< in settle_again
-  std::string checkpoint_;               ///< path without interval and ending
-  std::string last_checkpoint_;          ///< file that the fluid may still need
-  std::vector<protocol::State> states_;  // buffers of one exchange
+  bool settling_again_ = false;                ///< in settle_again
+  std::optional<protocol::SolidParts> parts_;  ///< once the two have agreed
+  std::vector<protocol::State> states_;        // buffers of one exchange
   std::vector<protocol::Shape> shapes_;
   std::vector<int> local_;
 };

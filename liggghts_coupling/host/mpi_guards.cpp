@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "liggghts_coupling/host/mpi_guards.h"
 
-#include <unistd.h>
-
-#include <cstdio>
-#include <fstream>
-
 #include "liggghts_coupling/host/coupling.h"
 #include "protocol/program.h"
 
 namespace dem {
 namespace {
 
-constexpr double kFarewellSeconds = 3.0;
 MPI_Comm local = MPI_COMM_NULL;
 std::string log_file;
 bool meant = false;
@@ -21,25 +15,8 @@ MPI_Comm redirected(MPI_Comm comm) {
   return comm == MPI_COMM_WORLD && local != MPI_COMM_NULL ? local : comm;
 }
 
-std::string last_error_line() {
-  std::ifstream log(log_file);
-  std::string line, found;
-  while (std::getline(log, line))
-    if (line.rfind("ERROR", 0) == 0) found = line;
-  return found.empty() ? "LIGGGHTS stopped with an error; see its output" : found;
-}
-
-/// Every rank comes here (error->all) or one alone (error->one, `lonely`).
 [[noreturn]] void end_with_error(bool lonely) {
-  std::fflush(stdout);
-  protocol::Channel* channel = Coupling::instance().channel.get();
-  if (channel && (lonely || channel->local_rank() == 0)) {
-    channel->raise({protocol::kFault, last_error_line()});
-    channel->await_farewell(kFarewellSeconds);
-  } else if (channel) {
-    sleep(static_cast<unsigned>(kFarewellSeconds) + 1);  // rank 0 ends the job
-  }
-  protocol::abort_job(protocol::kFault);
+  protocol::end_with_engine("LIGGGHTS", log_file, Coupling::instance().channel.get(), lonely);
 }
 
 }  // namespace
@@ -58,6 +35,7 @@ void finalize_mpi() {
 
 extern "C" {
 
+// Every rank comes here after error->all, one alone to MPI_Abort after error->one.
 int MPI_Finalize() {
   if (!dem::meant) dem::end_with_error(false);
   return PMPI_Finalize();

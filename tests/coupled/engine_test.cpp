@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "tests/support/coupled_job.h"
@@ -42,21 +43,24 @@ TEST_P(EngineTest, KeepsToTheProtocol) {
 std::vector<Check> checks() {
   std::vector<Check> all;
   for (const char* engine : {"liggghts", "lammps", "reference", "python"}) {
-    for (const char* name : {"move", "collide", "corner", "vanish", "late", "stop"})
+    for (const char* name : {"move", "collide", "corner", "vanish", "late", "stop", "checkpoint"})
       all.push_back({engine, name, 0});
     for (const char* name : {"version", "box"}) all.push_back({engine, name, 2});
     all.push_back({engine, "fail", 3});
-    const std::string e = engine;
-    if (e == "liggghts")
-      all.push_back({engine, "checkpoint", 0});
-    else
-      all.push_back({engine, "checkpoint_refused", 2});
   }
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(All, EngineTest, testing::ValuesIn(checks()), [](const auto& info) {
   return std::string(info.param.engine) + "_" + info.param.name;
 });
+
+/// Command of an engine for a scene.
+std::string command_for(const std::string& scene, const std::string& engine) {
+  const std::string quiet = " -log none -screen none -in " + scene + "/in." + engine;
+  if (engine == "liggghts") return test::kLiggghts + quiet;
+  if (engine == "lammps") return test::kBin + "/lammps_engine" + quiet;
+  return command(engine);
+}
 
 /// Columns y and vy of probes.csv.
 std::vector<std::array<double, 2>> track(const std::string& csv) {
@@ -83,16 +87,10 @@ TEST_P(SameScene, WithAnyEngineTheDiscFallsAlike) {
   const test::TemporaryFolder folder;
   folder.write("overlay.toml", "[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.2\n");
   for (const std::string engine : {"liggghts", "lammps", "reference", "python"}) {
-    const std::string solid =
-        engine == "liggghts"
-            ? test::kLiggghts + " -log none -screen none -in " + scene + "/in.liggghts"
-        : engine == "lammps"
-            ? test::kBin + "/lammps_engine -log none -screen none -in " + scene + "/in.lammps"
-            : command(engine);
     const auto job = test::run(
         test::mpirun(
             {test::kLbm + " " + scene + "/scene.toml overlay.toml --progress none --out " + engine},
-            {solid}),
+            {command_for(scene, engine)}),
         folder.path(), 60.0);
     ASSERT_EQ(job.exit_code, 0) << engine << job.output;
     tracks.push_back(track(test::read_file(folder.path() + "/" + engine + "/probes.csv")));
@@ -109,6 +107,51 @@ TEST_P(SameScene, WithAnyEngineTheDiscFallsAlike) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, SameScene, testing::Values("settling_disc", "disc_migration"),
+                         [](const auto& info) { return std::string(info.param); });
+
+class EngineRestart : public testing::TestWithParam<const char*> {
+ protected:
+  EngineRestart() {
+    folder_.write("overlay.toml",
+                  "[particles]\nstart = [[0.01, 0.005]]\n[numerics]\ncells_per_diameter = 10\n"
+                  "[run]\nend_time = 0.3\ncheckpoint_every = 0.1\n");
+  }
+  test::JobResult run(const std::string& options) const {
+    const std::string scene = BPLBM_SOURCE_DIR "/cases/settling_disc";
+    return test::run(test::mpirun({test::kLbm + " " + scene +
+                                   "/scene.toml overlay.toml --progress none " + options},
+                                  {command_for(scene, GetParam())}),
+                     folder_.path(), 60.0);
+  }
+  void expect_ok(const std::string& options) const {
+    const test::JobResult job = run(options);
+    ASSERT_EQ(job.exit_code, 0) << job.output;
+  }
+  test::TemporaryFolder folder_;
+};
+
+// The disc lies on the ground when the last checkpoint is written, so contacts must be kept too.
+TEST_P(EngineRestart, GoesOnToTheBit) {
+  expect_ok("--out whole");
+  expect_ok("--out parts --until 0.25");
+  expect_ok("--out parts --restart");
+  EXPECT_EQ(test::read_file(folder_.path() + "/parts/probes.csv"),
+            test::read_file(folder_.path() + "/whole/probes.csv"));
+}
+
+TEST_P(EngineRestart, ADamagedPartEndsBoth) {
+  expect_ok("--out out --until 0.15");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path() + "/out"))
+    if (entry.path().extension() == ".solid")
+      folder_.write("out/" + entry.path().filename().string(), "garbage");
+  const test::JobResult job = run("--out out --restart");
+  EXPECT_FALSE(job.timed_out);
+  EXPECT_NE(job.exit_code, 0);
+  EXPECT_NE(job.output.find("lbm | error | the solid program stopped: "), std::string::npos)
+      << job.output;
+}
+INSTANTIATE_TEST_SUITE_P(All, EngineRestart,
+                         testing::Values("liggghts", "lammps", "reference", "python"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

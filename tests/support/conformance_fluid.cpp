@@ -241,10 +241,6 @@ void check(const std::string& name, Channel& channel) {
     converse(
         channel, hello, 6, nothing, [](int, const Arrival&) {}, kCheckpoint);
   }
-  if (name == "checkpoint_refused") {
-    hello.features = kCheckpoints;
-    refused(channel, hello, "cannot write any");
-  }
   if (name == "fail") nan_load(channel);
   if (name == "version") {
     hello.version = 99;
@@ -281,9 +277,7 @@ int main(int argc, char** argv) {
     say(e.what());
     code = leave_after(ProtocolError(e.what()), "conformance_fluid", channel.get());
   } catch (const std::exception& e) {
-    say(name == "fail" || name == "version" || name == "box" || name == "checkpoint_refused"
-            ? "ok"
-            : e.what());
+    say(name == "fail" || name == "version" || name == "box" ? "ok" : e.what());
     code = leave_after(e, "conformance_fluid", channel.get());
   }
   channel.reset();

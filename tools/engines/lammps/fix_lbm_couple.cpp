@@ -2,10 +2,16 @@
 #include "tools/engines/lammps/fix_lbm_couple.h"
 
 #include <atom.h>
+#include <bond.h>
 #include <comm.h>
 #include <domain.h>
 #include <error.h>
+#include <force.h>
 #include <memory.h>
+#include <modify.h>
+#include <neighbor.h>
+#include <output.h>
+#include <pair.h>
 #include <timer.h>
 #include <update.h>
 
@@ -70,6 +76,10 @@ protocol::Hello FixLbmCouple::hello() const {
   hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
                                                               : protocol::Buoyancy::ByFluid;
   hello.gravity = gravity_;
+  hello.first_interval = fluid.first_interval;
+  // settle_again knows the forces of granular scenes only
+  const bool others = force->angle || force->dihedral || force->improper || force->kspace;
+  if (!others) hello.features = protocol::kCheckpoints;
   std::int64_t count = 0;
   for (int i = 0; i < atom->nlocal; ++i) count += (atom->mask[i] & groupbit) != 0;
   MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, world);
@@ -81,12 +91,20 @@ protocol::Hello FixLbmCouple::hello() const {
 /// particles in between with the next states.
 void FixLbmCouple::setup(int vflag) {
   Coupling& coupling = Coupling::instance();
+  if (settling_again_) {
+    write_part();
+    exchange(false);
+    post_force(vflag);
+    return;
+  }
   if (coupling.over)
     error->all(FLERR, std::string("fix lbm/couple: the fluid has reached its end: no run may "
                                   "follow"));
   if (!coupling.agreed) {
     coupling.session->agree(hello());
     coupling.agreed = true;
+    interval_ = coupling.session->fluid().first_interval;
+    parts_ = protocol::SolidParts::of(coupling.session->fluid());
     first_step_ = update->ntimestep;
     exchange(false);
   }
@@ -106,7 +124,10 @@ void FixLbmCouple::post_force(int) {
 void FixLbmCouple::end_of_step() {
   if (Coupling::instance().over || (update->ntimestep - first_step_) % substeps_ != 0) return;
   ++interval_;
-  exchange(true);
+  if (checkpoint_asked_)
+    settle_again();
+  else
+    exchange(true);
   if (Coupling::instance().over) timer->force_timeout();  // leaves the run after this step
 }
 
@@ -127,11 +148,13 @@ void FixLbmCouple::exchange(bool add_change) {
   }
   Coupling& coupling = Coupling::instance();
   const double time = static_cast<double>(interval_) * update->dt * substeps_;
-  const std::uint32_t flags = stop_asked_ ? protocol::kLast : protocol::kContinue;
+  const std::uint32_t flags =
+      (stop_asked_ ? protocol::kLast : 0U) | (settling_again_ ? protocol::kCheckpoint : 0U);
   const auto reply = coupling.session->exchange({interval_, time, flags}, states, shapes);
   coupling.over = stop_asked_;
   if (coupling.over) return;
   stop_asked_ = reply.flags & protocol::kStop;
+  checkpoint_asked_ = reply.flags & protocol::kCheckpoint;
   for (std::size_t n = 0; n < local.size(); ++n) {
     const int i = local[n];
     const protocol::Load& load = reply.loads[n];
@@ -144,6 +167,50 @@ void FixLbmCouple::exchange(bool add_change) {
       held_[i][3 + k] = load.torque[k];
     }
   }
+}
+
+/// What a run does when it begins, in the order of LAMMPS' Verlet::setup, in the middle of one:
+/// particles sorted and distributed, neighbours found, forces computed. Ends in setup() above.
+void FixLbmCouple::settle_again() {
+  settling_again_ = true;
+  checkpoint_asked_ = false;
+  update->setupflag = 1;
+  modify->setup_pre_exchange();
+  domain->pbc();
+  domain->reset_box();
+  comm->setup();
+  if (neighbor->style) neighbor->setup_bins();
+  comm->exchange();
+  if (atom->sortfreq > 0) atom->sort();
+  comm->borders();
+  modify->setup_pre_neighbor();
+  neighbor->build(1);
+  modify->setup_post_neighbor();
+  neighbor->ncalls = 0;
+  for (int i = 0; i < atom->nlocal + atom->nghost; ++i)
+    for (int k = 0; k < 3; ++k) atom->f[i][k] = atom->torque[i][k] = 0.0;
+  modify->setup_pre_force(0);
+  if (force->pair && force->pair->compute_flag) force->pair->compute(0, 0);
+  if (force->bond) force->bond->compute(0, 0);
+  modify->setup_pre_reverse(0, 0);
+  if (force->newton) comm->reverse_comm();
+  modify->setup(0);
+  update->setupflag = 0;
+  settling_again_ = false;
+}
+
+/// LAMMPS' restart file of this interval, by the command for periodic ones.
+void FixLbmCouple::write_part() {
+  const std::string part = parts_->name(interval_) + ".part";  // LAMMPS adds .STEP
+  std::string every = std::to_string(MAXSMALLINT), pattern = part + ".*", off = "0";
+  char* on[] = {every.data(), pattern.data()};
+  output->create_restart(2, on);
+  output->write_restart(update->ntimestep);
+  char* never[] = {off.data()};
+  output->create_restart(1, never);
+  MPI_Barrier(world);
+  if (comm->me == 0) parts_->complete(part + "." + std::to_string(update->ntimestep), interval_);
+  MPI_Barrier(world);  // it is there before any rank says so
 }
 
 void FixLbmCouple::grow_arrays(int n) {

@@ -6,9 +6,12 @@
 #include <fix.h>
 // clang-format on
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "protocol/session.h"
+#include "protocol/solid_parts.h"
 
 namespace engine {
 
@@ -22,7 +25,8 @@ struct Coupling {
 /// fix ID group lbm/couple every N [gravity GX GY GZ]: as the LIGGGHTS fix of that name, for LAMMPS
 /// spheres. Sends the group's particles every N steps and adds the loads that it gets for them at
 /// every step. LAMMPS does not tell what its fix gravity does, so the script must, for the fluid to
-/// compare.
+/// compare. Where the fluid asks for a checkpoint, LAMMPS is set up anew at that step, as a restart
+/// would, and writes its restart file.
 class FixLbmCouple final : public LAMMPS_NS::Fix {
  public:
   FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
@@ -44,13 +48,17 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   static constexpr int kValues = 6;  ///< force, torque
   protocol::Hello hello() const;
   void exchange(bool add_change);
+  void settle_again();
+  void write_part();
 
   int substeps_ = 0;
   protocol::Vec3 gravity_{};  ///< [m/s²]
   double** held_ = nullptr;   ///< [nmax][6] force [N] and torque [N m] of the current interval
   LAMMPS_NS::bigint first_step_ = 0;
   std::int64_t interval_ = 0;
-  bool stop_asked_ = false;
+  bool stop_asked_ = false, checkpoint_asked_ = false;
+  bool settling_again_ = false;                ///< in settle_again
+  std::optional<protocol::SolidParts> parts_;  ///< once the two have agreed
 };
 
 }  // namespace engine

@@ -26,11 +26,17 @@ LAMMPS_NS::Fix* make_fix(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg) {
   return new FixLbmCouple(lammps, narg, arg);
 }
 
+std::unique_ptr<protocol::Channel> channel;
+std::string log_file = "log.lammps";
+bool finalize_is_meant = false;
+
 void run(std::vector<std::string> arguments, protocol::SolidSession& session, MPI_Comm local) {
   Coupling::instance().session = &session;
   std::string script = "in.lammps";
-  for (std::size_t i = 1; i + 1 < arguments.size(); ++i)
+  for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
     if (arguments[i] == "-in") script = arguments[i + 1];
+    if (arguments[i] == "-log") log_file = arguments[i + 1];
+  }
   if (!std::filesystem::is_regular_file(script))
     throw protocol::ProtocolError(script + ": no such script; give -in FILE", protocol::kBadInput);
   const auto folder = std::filesystem::path(script).parent_path();
@@ -51,11 +57,21 @@ void run(std::vector<std::string> arguments, protocol::SolidSession& session, MP
 
 }  // namespace
 
+// LAMMPS ends the process itself after an error: all ranks finalise, or one aborts. The fluid would
+// wait for it; these two stand before those of MPI.
+extern "C" int MPI_Finalize() {
+  if (!finalize_is_meant)
+    protocol::end_with_engine("LAMMPS", log_file, channel.get(), /*lonely=*/false);
+  return PMPI_Finalize();
+}
+extern "C" int MPI_Abort(MPI_Comm, int) {
+  protocol::end_with_engine("LAMMPS", log_file, channel.get(), /*lonely=*/true);
+}
+
 int main(int argc, char** argv) {
   std::vector<std::string> arguments(argv, argv + argc);
   MPI_Init(&argc, &argv);
   protocol::catch_signals();
-  std::unique_ptr<protocol::Channel> channel;
   protocol::World world;
   int code = protocol::kOk;
   try {
@@ -70,6 +86,7 @@ int main(int argc, char** argv) {
   }
   channel.reset();
   protocol::disconnect(world);
+  finalize_is_meant = true;
   MPI_Finalize();
   return code;
 }

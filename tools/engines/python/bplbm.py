@@ -6,9 +6,13 @@
         while (loads := fluid.exchange(states, shapes)) is not None:
             ...  # substeps with loads["force"] [N] and loads["torque"] [N m]; then new states, and shapes
 
+Where `fluid.interval` is not 0 at the start, the run goes on with the states of `fluid.restart()`. Who has more to keep than states (contacts with a memory, say)
+gives `agree(..., checkpoints=False)`, and scenes with checkpoints are refused.
+
 Errors reach the fluid, and those of the fluid end this program with its exit code.
 """
 
+import pathlib
 import struct
 import sys
 import time
@@ -20,7 +24,7 @@ STATE = np.dtype([("id", "i8"), ("x", "f8", 3), ("v", "f8", 3), ("omega", "f8", 
 SHAPE = np.dtype([("id", "i8"), ("radius", "f8"), ("mass", "f8"), ("inertia", "f8"), ("type", "i8")])  # m, kg, kg m²
 LOAD = np.dtype([("id", "i8"), ("force", "f8", 3), ("torque", "f8", 3)])
 
-MAGIC, VERSION, SOLID, LAST, STOP = 0x4C425042, 3, 2, 1, 2
+MAGIC, VERSION, SOLID, LAST, STOP, CHECKPOINT = 0x4C425042, 3, 2, 1, 2, 4
 HELLO, ANSWER, STATES, LOADS, GOODBYE, FAULT, FAREWELL = range(1, 8)
 FRAME_TAG, URGENT_TAG, ROLE_TAG, LEADER_TAG = 7001, 7002, 7003, 7004
 # The hello field by field: s text, ? optional, other letters as in Python's struct.
@@ -43,7 +47,7 @@ class Solid:
     """A session with the fluid. `interval` is the number of the next states."""
 
     def __init__(self, program):
-        self.program, self.interval, self.known, self.last = program, 0, set(), False
+        self.program, self.interval, self.known, self.flags = program, 0, set(), 0
 
     # ---- what an engine calls ----------------------------------------------------------------------------------
 
@@ -60,12 +64,19 @@ class Solid:
         """Three numbers, e.g. vector("gravity_{}"); 0 where there is none."""
         return np.array([self.number(pattern.format(axis), 0.0) for axis in "xyz"])
 
-    def agree(self, box_lo, box_hi, periodic, gravity, step, substeps, particles=None):
+    def restart(self):
+        """STATE array of the checkpoint that a run goes on from which does not begin at interval 0."""
+        try:
+            return np.load(self.text("restart_file"))
+        except ValueError as error:
+            raise Stop(f"{self.text('restart_file')} is no checkpoint of this engine: {error}", 2) from error
+
+    def agree(self, box_lo, box_hi, periodic, gravity, step, substeps, particles=None, checkpoints=True):
         """Both sides compare what they are; a difference ends both. SI units, three components each."""
         self.duration = step * substeps  # of an interval [s]
         mine = dict(self.fluid, role=SOLID, program=self.program, program_version="1", box_lo=list(box_lo),
                     box_hi=list(box_hi), periodic=list(periodic), gravity=list(gravity), step=step, fluid_steps=1,
-                    solid_steps=substeps, features=0, schedule=0, particles=particles, radius=None, density=None)
+                    solid_steps=substeps, features=int(checkpoints), schedule=0, particles=particles, radius=None, density=None)
         self._send(HELLO, encode_hello(mine))
         reasons = [f"box {axis}: fluid {self.fluid[end][a]} m, solid {mine[end][a]} m"
                    for end in ("box_lo", "box_hi") for a, axis in enumerate("xy")
@@ -81,10 +92,12 @@ class Solid:
         """Sends STATE and SHAPE arrays [particle]; returns LOAD [particle] in their order, or None at the end."""
         new = np.array([i not in self.known for i in shapes["id"].tolist()], bool)
         self.known = set(shapes["id"].tolist())
-        head = struct.pack("<qdI", self.interval, self.interval * self.duration, LAST if self.last else 0)
+        if self.flags & CHECKPOINT:
+            self._keep(states)
+        head = struct.pack("<qdI", self.interval, self.interval * self.duration, self.flags)
         self._send(STATES, head + struct.pack("<Q", len(states)) + states.tobytes() + struct.pack("<Q", new.sum())
                    + shapes[new].tobytes() + b"\0")  # no bonds
-        if self.last:
+        if self.flags & LAST:
             return None
         reply = Reader(self._receive(LOADS))
         interval, _, flags = reply.take("q"), reply.take("d"), reply.take("I")
@@ -93,9 +106,22 @@ class Solid:
             raise Stop(f"loads of other particles or of interval {interval} at interval {self.interval}")
         if not (np.isfinite(loads["force"]).all() and np.isfinite(loads["torque"]).all()):
             raise Stop(f"a hydrodynamic load is not finite at interval {self.interval}", 3)
-        self.last = bool(flags & STOP)
+        self.flags = (LAST if flags & STOP else 0) | flags & CHECKPOINT
         self.interval += 1
         return loads
+
+    def _keep(self, states):
+        """Writes the states of a checkpoint, whole or not at all; the one before stays, the fluid may still need it."""
+        prefix = pathlib.Path(self.text("checkpoint"))
+        whole = prefix.with_name(f"{prefix.name}.{self.interval}.solid")
+        part = whole.with_name(whole.name + ".part")
+        with part.open("wb") as file:
+            np.save(file, states)
+        part.rename(whole)
+        for old in prefix.parent.glob(prefix.name + ".*.solid"):
+            if old.name not in (whole.name, self.kept):
+                old.unlink()
+        self.kept = whole.name
 
     # ---- the session ---------------------------------------------------------------------------------------------
 
@@ -113,7 +139,8 @@ class Solid:
             self.fluid = decode_hello(self._receive(HELLO))
         except Stop as stop:
             self._leave(stop)
-        self.variables = self.fluid["variables"]
+        self.variables, self.interval = self.fluid["variables"], self.fluid["first_interval"]
+        self.kept = pathlib.Path(self.text("restart_file", "none")).name
         return self
 
     def __exit__(self, kind, error, trace):

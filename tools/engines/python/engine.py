@@ -45,7 +45,7 @@ with bplbm.Solid("engine.py") as fluid:
             f[i] += (push(2 * r - distance, -np.sum((v[i] - v) * n, axis=1) / distance) / distance) @ n
         return f
 
-    discs = inserted(np.empty(0, bplbm.STATE))
+    discs = fluid.restart() if fluid.interval else inserted(np.empty(0, bplbm.STATE))
     fluid.agree(lo, hi, periodic, gravity, dt, substeps, len(discs))
     shapes = lambda: np.array([(i, r, m, m * r**2 / 2, 1) for i in discs["id"]], bplbm.SHAPE)  # noqa: E731
     while (loads := fluid.exchange(discs, shapes())) is not None:

@@ -7,12 +7,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numbers>
 
+#include "protocol/codec.h"
 #include "protocol/mpi_channel.h"
 #include "protocol/program.h"
 #include "protocol/session.h"
+#include "protocol/solid_parts.h"
 
 namespace {
 
@@ -64,7 +68,10 @@ class Discs {
     damping_ = 2.0 * offer.number_or("damping_ratio", 0.5) * std::sqrt(mass * stiffness_);
     const double g = offer.number("gravity");
     gravity_ = {g * offer.number("gravity_x"), g * offer.number("gravity_y"), 0.0};
-    insert(static_cast<int>(fluid.first_interval));
+    if (fluid.first_interval > 0)
+      read(offer.text("restart_file"));
+    else
+      insert(0);
   }
 
   /// Puts the particles of an interval into the box.
@@ -80,6 +87,28 @@ class Discs {
       states.push_back(s);
       shapes.push_back(shape_);
       shapes.back().id = i;
+    }
+  }
+
+  /// A checkpoint is a frame of states, as it would go to the fluid.
+  void write(const std::string& file, const StepHeader& head) const {
+    const Bytes frame = encode(StateBatch{head, states, shapes, {}});
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(frame.data()), std::ssize(frame)).flush();
+    if (!out)
+      throw ProtocolError("the checkpoint " + file + " cannot be written; is the disk full?");
+  }
+  /// Every path of the discs is decided by places and velocities: a restart goes on to the bit.
+  void read(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+    try {
+      StateBatch batch = decode<StateBatch>({begin, begin + text.size()});
+      states = std::move(batch.states);
+      shapes = std::move(batch.shapes);
+    } catch (const BadMessage& error) {
+      throw ProtocolError(file + " is no checkpoint of this engine: " + error.what(), kBadInput);
     }
   }
 
@@ -185,16 +214,22 @@ void run(Channel& channel) {
   hello.step = discs.step();
   hello.solid_steps = static_cast<std::uint32_t>(offer.number("substeps"));
   hello.particles = static_cast<std::int64_t>(discs.states.size());
+  hello.first_interval = fluid.first_interval;
+  hello.features = kCheckpoints;
   session.agree(hello);
-  const double interval = hello.step * hello.solid_steps;
-  bool stop = false;
-  for (std::int64_t k = 0;; ++k) {
-    if (k > 0) discs.insert(static_cast<int>(k));
-    const auto reply =
-        session.exchange({k, static_cast<double>(k) * interval, stop ? kLast : kContinue},
-                         discs.states, discs.shapes);
-    if (stop) return;
-    stop = reply.flags & kStop;
+  SolidParts parts = SolidParts::of(fluid);
+  StepHeader head{fluid.first_interval, 0.0, kContinue};
+  for (;; ++head.interval) {
+    head.time = static_cast<double>(head.interval) * hello.step * hello.solid_steps;
+    if (head.interval > fluid.first_interval) discs.insert(static_cast<int>(head.interval));
+    if (head.flags & kCheckpoint) {
+      const std::string part = parts.name(head.interval) + ".part";
+      discs.write(part, head);
+      parts.complete(part, head.interval);
+    }
+    const auto reply = session.exchange(head, discs.states, discs.shapes);
+    if (head.flags & kLast) return;
+    head.flags = (reply.flags & kStop ? kLast : 0U) | (reply.flags & kCheckpoint);
     discs.advance(hello.solid_steps, reply.loads);
   }
 }
