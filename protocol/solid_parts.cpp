@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
 
-#include "protocol/channel.h"
+#include "protocol/errors.h"
 
 namespace protocol {
 
@@ -39,13 +40,17 @@ std::string SolidParts::name(std::int64_t interval) const {
   return fmt::format("{}.{}.solid", prefix_, interval);
 }
 
-void SolidParts::complete(const std::string& written, std::int64_t interval) {
-  const std::string whole = name(interval);
+void SolidParts::keep(std::int64_t interval, std::span<const std::byte> content) {
+  const std::string whole = name(interval), part = whole + ".part";
+  std::ofstream out(part, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(content.data()), std::ssize(content));
+  out.close();
   std::error_code error;
-  fs::rename(written, whole, error);
-  if (error)
-    throw ProtocolError(
-        fmt::format("the checkpoint {} cannot be written: {}", whole, error.message()));
+  if (out) fs::rename(part, whole, error);
+  if (!out || error) {
+    fs::remove(part, error);
+    throw ProtocolError("the checkpoint " + whole + " cannot be written; is the disk full?");
+  }
   for (const auto& entry : fs::directory_iterator(fs::path(prefix_).parent_path())) {
     const std::string found = entry.path().string();
     if (found.starts_with(prefix_ + ".") && found.ends_with(".solid") && found != whole &&

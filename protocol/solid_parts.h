@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "protocol/messages.h"
@@ -21,9 +23,9 @@ class SolidParts {
   SolidParts beside(const std::string& name) const;
 
   std::string name(std::int64_t interval) const;
-  /// Gives a file that was written under another name its own. It and the one before stay, older
-  /// ones are removed. @throws ProtocolError  cannot be done
-  void complete(const std::string& written, std::int64_t interval);
+  /// Writes the part of an interval. It and the one before stay, older ones are removed.
+  /// @throws ProtocolError  cannot be written; those before stay
+  void keep(std::int64_t interval, std::span<const std::byte> content);
 
  private:
   std::string prefix_, last_;

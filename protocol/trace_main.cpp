@@ -97,7 +97,7 @@ int plot(const std::string& path, const std::string& out, std::int64_t particle)
   const std::string id = std::to_string(particle);
   execl("/usr/bin/python3", "python3", BPLBM_SOURCE_DIR "/tools/trace_plot.py", path.c_str(),
         out.c_str(), id.c_str(), nullptr);
-  throw std::runtime_error("/usr/bin/python3 cannot be started");
+  throw std::runtime_error("/usr/bin/python3 cannot be started; tools/install installs it");
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ def picture_resolution(run, others):
     errors = [100 * (reynolds(r)[1].max() / RE_REFERENCE - 1) for r in runs]
     half = 100 * (RE_LITERATURE[1] / RE_REFERENCE - 1)
     figure, ax = plt.subplots(figsize=(5.4, 3.4))
-    ax.axhspan(-100 * RE_TOLERANCE, 100 * RE_TOLERANCE, color="0.93", label="tolerance")
+    ax.axhspan(-100 * RE_TOLERANCE, 100 * RE_TOLERANCE, color="0.85", label="tolerance")
     ax.axhspan(-half, half, color="0.8", label="spread of the literature")
     ax.plot(cells, errors, "o-", label="BPLBM")
     for r, x, y in zip(runs, cells, errors):

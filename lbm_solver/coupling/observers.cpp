@@ -153,8 +153,9 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* part
                                  : fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x.x(), x.y(), x.z());
   if (!e.finite)
     throw NumericsError(fmt::format(
-        "interval {}: the fluid is not finite at {}; the step was too long or the cell too coarse "
-        "for this flow (Re_h = {:.3g})",
+        "interval {}: the fluid is not finite at {}: the step was too long or the cell too coarse "
+        "for this flow (Re_h = {:.3g}); raise fluid.velocity_scale if the flow is faster, else "
+        "take more cells",
         interval, place, plan_.reynolds_cell));
   const double particle =
       ranks_.max(particles ? particles->max_speed() / plan_.units.velocity() : 0.0);

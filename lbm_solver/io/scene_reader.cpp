@@ -266,7 +266,7 @@ Scene read_scene(const std::vector<std::string>& files) {
   for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
   TableReader root(merged, "", files.front());
   Scene scene;
-  scene.file = files.front();
+  scene.file = fmt::format("{}", fmt::join(files, " + "));
   scene.title = root.text_or("title", std::filesystem::path(files.front()).stem().string());
   scene.box = read_box(root.table("box"));
   const int d = scene.box.dimension;

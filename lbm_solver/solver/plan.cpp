@@ -73,20 +73,35 @@ void check_particles(const Scene& s) {
       throw InputError(s.file + ": particles.diameter",
                        fmt::format("= {:.6g} m exceeds half of a periodic length", p.diameter.hi),
                        "take a longer box");
+}
+
+/// Discs that the scene places: inside the box, none in another.
+void check_starts(const Scene& s) {
+  const ParticleScene& p = *s.particles;
   const double r = 0.5 * p.diameter.lo;
-  for (const Vec3& x : p.start) {
-    const auto outside = [&](int k, SideKind side) {
-      const double margin = side == SideKind::Wall ? r : 0.0;
-      return x[k] - margin < s.box.origin[k] - 1e-12 ||
-             x[k] + margin > s.box.origin[k] + s.box.size[k] + 1e-12;
-    };
-    for (int k = 0; k < s.box.dimension; ++k)
-      if (outside(k, s.box.sides[k]))
+  const int d = s.box.dimension;
+  for (std::size_t i = 0; i < p.start.size(); ++i) {
+    const Vec3& x = p.start[i];
+    for (int k = 0; k < d; ++k) {
+      const double margin = s.box.sides[k] == SideKind::Wall ? r : 0.0;
+      const double lo = s.box.origin[k] + margin, hi = s.box.origin[k] + s.box.size[k] - margin;
+      if (x[k] < lo - 1e-12 || x[k] > hi + 1e-12)
         throw InputError(
             s.file + ": particles.start",
             fmt::format("{} with radius {:.6g} m lies outside the box", place_text(s, x), r),
-            fmt::format("keep it within {:.6g} … {:.6g} m in {}", s.box.origin[k],
-                        s.box.origin[k] + s.box.size[k], "xyz"[k]));
+            fmt::format("keep its centre within {:.6g} … {:.6g} m in {}", lo, hi, "xyz"[k]));
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      Vec3 apart = x - p.start[j];
+      for (int k = 0; k < d; ++k)
+        if (s.box.sides[k] == SideKind::Periodic)
+          apart[k] = std::remainder(apart[k], s.box.size[k]);
+      if (const double distance = apart.norm(); distance < 2.0 * r * (1.0 - 1e-6))
+        throw InputError(s.file + ": particles.start",
+                         fmt::format("{} and {} overlap by {:.4g} m", place_text(s, p.start[j]),
+                                     place_text(s, x), 2.0 * r - distance),
+                         fmt::format("keep centres a diameter apart, {:.6g} m", 2.0 * r));
+    }
   }
 }
 
@@ -150,9 +165,10 @@ void judge_step(const Scene& s, Plan& plan) {
                     kStopSpeed),
         fmt::format("take at most {:.3g} s", kWarnSpeed * plan.units.dx / s.fluid.velocity_scale));
   if (tau - 0.5 < 1e-6)
-    throw InputError(s.file + ": numerics",
-                     fmt::format("τ - ½ = {:.2g} is not positive enough", tau - 0.5),
-                     "take a finer cell or a smaller time step ratio");
+    throw InputError(
+        s.file + ": numerics",
+        fmt::format("τ - ½ = 3 ν Δt/Δx² = {:.2g} is too small for round-off", tau - 0.5),
+        "take a finer cell, a longer time step or a lower velocity_scale");
   if (tau > 3.0)
     throw InputError(s.file + ": numerics.time_step", fmt::format("gives τ = {:.3g}, above 3", tau),
                      fmt::format("take at most {:.3g} s",
@@ -298,6 +314,7 @@ Plan make_plan(const Scene& s) {
   plan.reynolds = s.fluid.velocity_scale * reference_length(s) / s.fluid.viscosity;
   if (s.particles) {
     check_particles(s);
+    check_starts(s);
     plan.cells_per_diameter = s.particles->diameter.lo / dx;
   }
   if (s.coupling) plan.fluid_steps = s.coupling->fluid_steps;

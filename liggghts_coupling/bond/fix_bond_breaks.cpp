@@ -72,7 +72,10 @@ void FixBondBreaks::open() {
   const std::string kept =
       update->ntimestep > 0 ? kept_lines(path_, static_cast<long>(update->ntimestep)) : "";
   file_.reset(std::fopen(path_.c_str(), "w"));
-  if (!file_) error->one(FLERR, ("fix bond/breaks: " + path_ + " cannot be written").c_str());
+  if (!file_)
+    error->one(FLERR, ("fix bond/breaks: " + path_ +
+                       " cannot be written; give a file in a folder that exists")
+                          .c_str());
   std::fputs((kColumns + kept).c_str(), file_.get());
   std::fflush(file_.get());
 }

@@ -20,6 +20,7 @@
 
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/solid_hello.h"
+#include "protocol/file_catcher.h"
 #include "protocol/program.h"
 #include "protocol/trace.h"
 
@@ -339,15 +340,20 @@ void FixLbmCouple::keep_last_state(const std::exception& error) {
   MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, world);
   if (!finite) return;
   protocol::SolidParts fault = parts_->beside("fault");
-  write_part(fault);
+  try {
+    write_part(fault);
+  } catch (const protocol::ProtocolError& second) {  // the first is what must be heard
+    fmt::print(stderr, "liggghts | its last state is not kept: {}\n", second.what());
+  }
 }
 
-/// A restart file of this interval.
+/// LIGGGHTS' restart file of this interval.
 void FixLbmCouple::write_part(protocol::SolidParts& parts) {
-  std::string part = parts.name(interval_) + ".part";
-  LAMMPS_NS::WriteRestart(lmp).write(part.data());
-  MPI_Barrier(world);
-  if (comm->me == 0) parts.complete(part, interval_);
+  std::optional<protocol::FileCatcher> file;  // rank 0 writes for all
+  if (comm->me == 0) file.emplace();
+  std::string name = file ? file->path() : "";
+  LAMMPS_NS::WriteRestart(lmp).write(name.data());
+  if (file) parts.keep(interval_, file->take());
 }
 
 // ---- held loads travel with their particles ---------------------------------------------------

@@ -116,11 +116,12 @@ class EngineRestart : public testing::TestWithParam<const char*> {
                   "[particles]\nstart = [[0.01, 0.005]]\n[numerics]\ncells_per_diameter = 10\n"
                   "[run]\nend_time = 0.3\ncheckpoint_every = 0.1\n");
   }
-  test::JobResult run(const std::string& options) const {
+  /// @param before  of the engine's command
+  test::JobResult run(const std::string& options, const std::string& before = "") const {
     const std::string scene = BPLBM_SOURCE_DIR "/cases/settling_disc";
     return test::run(test::mpirun({test::kLbm + " " + scene +
                                    "/scene.toml overlay.toml --progress none " + options},
-                                  {command_for(scene, GetParam())}),
+                                  {before + command_for(scene, GetParam())}),
                      folder_.path(), 60.0);
   }
   void expect_ok(const std::string& options) const {
@@ -149,6 +150,20 @@ TEST_P(EngineRestart, ADamagedPartEndsBoth) {
   EXPECT_NE(job.exit_code, 0);
   EXPECT_NE(job.output.find("lbm | error | the solid program stopped: "), std::string::npos)
       << job.output;
+}
+// LAMMPS and LIGGGHTS do not look whether their writes succeed.
+TEST_P(EngineRestart, AFullDiskOfTheSolidLeavesTheCheckpointBefore) {
+  expect_ok("--out whole");
+  expect_ok("--out parts --until 0.15");
+  const test::JobResult cut =
+      run("--out parts --restart", "sh " BPLBM_SOURCE_DIR "/tests/support/short_of_disk.sh 0 ");
+  EXPECT_EQ(cut.exit_code, 1) << cut.output;
+  EXPECT_NE(cut.output.find("lbm | error | the solid program stopped: "), std::string::npos)
+      << cut.output;
+  EXPECT_NE(cut.output.find("checkpoint.480.solid"), std::string::npos) << cut.output;
+  expect_ok("--out parts --restart");
+  EXPECT_EQ(test::read_file(folder_.path() + "/parts/probes.csv"),
+            test::read_file(folder_.path() + "/whole/probes.csv"));
 }
 INSTANTIATE_TEST_SUITE_P(All, EngineRestart,
                          testing::Values("liggghts", "lammps", "reference", "python"),

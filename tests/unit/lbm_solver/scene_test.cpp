@@ -70,10 +70,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "diameter = 0.0025",
                 "diameter = 0.025",
                 {"particles.diameter", "wider than the box"}},
-        Spoiled{"periodic_half",
-                "sides_x = \"wall\"",
-                "sides_x = \"periodic\"\norigin = [0.0, 0.0]\nsize_dummy = 1",
-                {"size_dummy"}},
+        Spoiled{"discs_overlap",
+                "[[0.01, 0.04]]",
+                "[[0.01, 0.04], [0.0112, 0.04]]",
+                {"particles.start", "[0.0112, 0.04]", "overlap by 0.0013 m", "0.0025 m"}},
         Spoiled{"unknown_collision",
                 "\"trt\"",
                 "\"magic\"",
@@ -109,16 +109,48 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"not_a_pair", "size = [0.02, 0.06]", "size = [0.02]", {"box.size", "pair"}}),
     [](const auto& info) { return info.param.name; });
 
-TEST(Scene, AStepTooLongForTheViscosityIsRefused) {
-  Scene scene = read_scene({BPLBM_SOURCE_DIR "/cases/settling_disc/scene.toml"});
-  scene.fluid.viscosity = 1e-3;
-  scene.numerics.time_step = 1e-4;  // tau = 0.5 + 3 · 1e-3 · 1e-4 / 1.25e-4² = 19.7
+Scene settling_disc() {
+  return read_scene({BPLBM_SOURCE_DIR "/cases/settling_disc/scene.toml"});
+}
+void expect_refused(const Scene& scene, const std::string& words) {
   try {
     make_plan(scene);
-    FAIL();
+    FAIL() << "accepted";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("τ = 19.7"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
   }
+}
+
+TEST(Scene, AStepTooLongForTheViscosityIsRefused) {
+  Scene scene = settling_disc();
+  scene.fluid.viscosity = 1e-3;
+  scene.numerics.time_step = 1e-4;  // tau = 0.5 + 3 · 1e-3 · 1e-4 / 1.25e-4² = 19.7
+  expect_refused(scene, "τ = 19.7");
+}
+
+TEST(Scene, DiscsThatOverlapThroughAPeriodicSideAreRefused) {
+  Scene scene = settling_disc();
+  scene.particles->start = {{0.0005, 0.04, 0.0}, {0.0195, 0.04, 0.0}};
+  expect_refused(scene, "outside the box");  // of walls
+  scene.box.sides[0] = SideKind::Periodic;
+  expect_refused(scene, "overlap by 0.0015 m");
+  scene.particles->start[1].y() = 0.045;
+  EXPECT_NO_THROW(make_plan(scene));
+}
+
+TEST(Scene, ADiscWiderThanHalfAPeriodicLengthIsRefused) {
+  Scene scene = settling_disc();
+  scene.particles->diameter = {0.011, 0.011};
+  EXPECT_NO_THROW(make_plan(scene));
+  scene.box.sides[0] = SideKind::Periodic;
+  expect_refused(scene, "particles.diameter = 0.011 m exceeds half of a periodic length");
+}
+
+TEST(Scene, AMessageNamesAllFilesThatItMayMean) {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder.write("scene.toml", test::good_scene()),
+                    overlay = folder.write("overlay.toml", "[coupling]\nsubsteps = 1\n");
+  expect_refused(read_scene({scene, overlay}), overlay + ": coupling.substeps = 1 makes");
 }
 
 TEST(Scene, MissingFileIsNamed) {

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "protocol/errors.h"
+#include "protocol/file_catcher.h"
 #include "tests/support/job.h"
 
 namespace {
@@ -15,8 +17,8 @@ using namespace protocol;
 
 class SolidPartsTest : public testing::Test {
  protected:
-  void write(SolidParts& parts, std::int64_t interval) const {
-    parts.complete(folder_.write("part", "states"), interval);
+  static void write(SolidParts& parts, std::int64_t interval) {
+    parts.keep(interval, std::as_bytes(std::span(kText)));
   }
   std::vector<std::string> files() const {
     std::vector<std::string> names;
@@ -25,6 +27,7 @@ class SolidPartsTest : public testing::Test {
     std::sort(names.begin(), names.end());
     return names;
   }
+  static constexpr std::string_view kText = "states";
   using Names = std::vector<std::string>;
   test::TemporaryFolder folder_;
 };
@@ -33,6 +36,7 @@ TEST_F(SolidPartsTest, KeepsTheLastTwo) {
   SolidParts parts(folder_.path() + "/checkpoint");
   for (const int interval : {3, 6, 9}) write(parts, interval);
   EXPECT_EQ(files(), (Names{"checkpoint.6.solid", "checkpoint.9.solid"}));
+  EXPECT_EQ(test::read_file(parts.name(9)), kText);
 }
 
 // Until the fluid has its part of the next one, a restarted run may need to begin there again.
@@ -68,6 +72,31 @@ TEST_F(SolidPartsTest, SaysWhichFileCannotBeWritten) {
               std::string::npos)
         << error.what();
   }
+}
+
+TEST(FileCatcher, HoldsWhatWasWrittenToItsName) {
+  std::string text;
+  for (int i = 0; i < 100000; ++i) text += std::to_string(i) + '\n';  // ten times what a pipe holds
+  FileCatcher file(".7");
+  EXPECT_TRUE(file.path().ends_with(".7"));
+  {
+    std::FILE* out = std::fopen(file.path().c_str(), "wb");
+    ASSERT_NE(out, nullptr);
+    std::fwrite(text.data(), 1, text.size(), out);
+    std::fclose(out);
+  }
+  const Bytes bytes = file.take();
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), text);
+}
+
+TEST(FileCatcher, LeavesNothingBehindAndWaitsForNobody) {
+  std::string path;
+  {
+    const FileCatcher file;  // never opened
+    path = file.path();
+    EXPECT_TRUE(std::filesystem::exists(path));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 }  // namespace

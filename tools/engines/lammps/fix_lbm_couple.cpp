@@ -19,6 +19,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "protocol/file_catcher.h"
+
 namespace engine {
 
 using namespace LAMMPS_NS::FixConst;
@@ -199,17 +201,20 @@ void FixLbmCouple::settle_again() {
   settling_again_ = false;
 }
 
-/// LAMMPS' restart file of this interval, by the command for periodic ones.
+/// LAMMPS' restart file of this interval, by the command for periodic ones, which puts the step in
+/// place of the star.
 void FixLbmCouple::write_part() {
-  const std::string part = parts_->name(interval_) + ".part";  // LAMMPS adds .STEP
-  std::string every = std::to_string(MAXSMALLINT), pattern = part + ".*", off = "0";
-  char* on[] = {every.data(), pattern.data()};
+  const std::string step = "." + std::to_string(update->ntimestep);
+  std::optional<protocol::FileCatcher> file;  // rank 0 writes for all
+  if (comm->me == 0) file.emplace(step);
+  std::string never = "0", every = std::to_string(MAXSMALLINT), name = "none.*";
+  if (file) name = file->path().substr(0, file->path().size() - step.size()) + ".*";
+  char* on[] = {every.data(), name.data()};
+  char* off[] = {never.data()};
   output->create_restart(2, on);
   output->write_restart(update->ntimestep);
-  char* never[] = {off.data()};
-  output->create_restart(1, never);
-  MPI_Barrier(world);
-  if (comm->me == 0) parts_->complete(part + "." + std::to_string(update->ntimestep), interval_);
+  output->create_restart(1, off);
+  if (file) parts_->keep(interval_, file->take());
   MPI_Barrier(world);  // it is there before any rank says so
 }
 

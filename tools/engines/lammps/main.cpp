@@ -77,7 +77,10 @@ int main(int argc, char** argv) {
   try {
     world = protocol::connect(protocol::Role::Solid);
     if (!world.coupled())
-      throw protocol::ProtocolError("no fluid program was started beside it", protocol::kBadInput);
+      throw protocol::ProtocolError(
+          "no fluid program was started beside it; start: mpirun -np 1 lbm scene.toml : -np 1 "
+          "lammps_engine -in FILE",
+          protocol::kBadInput);
     channel = protocol::make_mpi_channel(world, protocol::Role::Solid);
     protocol::SolidSession session(*channel, 60.0);
     run(arguments, session, world.local);

@@ -115,9 +115,13 @@ class Solid:
         prefix = pathlib.Path(self.text("checkpoint"))
         whole = prefix.with_name(f"{prefix.name}.{self.interval}.solid")
         part = whole.with_name(whole.name + ".part")
-        with part.open("wb") as file:
-            np.save(file, states)
-        part.rename(whole)
+        try:
+            with part.open("wb") as file:
+                np.save(file, states)
+            part.rename(whole)
+        except OSError as error:
+            part.unlink(missing_ok=True)
+            raise Stop(f"the checkpoint {whole} cannot be written ({error}); is the disk full?") from error
         for old in prefix.parent.glob(prefix.name + ".*.solid"):
             if old.name not in (whole.name, self.kept):
                 old.unlink()

@@ -91,12 +91,8 @@ class Discs {
   }
 
   /// A checkpoint is a frame of states, as it would go to the fluid.
-  void write(const std::string& file, const StepHeader& head) const {
-    const Bytes frame = encode(StateBatch{head, states, shapes, {}});
-    std::ofstream out(file, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(frame.data()), std::ssize(frame)).flush();
-    if (!out)
-      throw ProtocolError("the checkpoint " + file + " cannot be written; is the disk full?");
+  Bytes checkpoint(const StepHeader& head) const {
+    return encode(StateBatch{head, states, shapes, {}});
   }
   /// Every path of the discs is decided by places and velocities: a restart goes on to the bit.
   void read(const std::string& file) {
@@ -222,11 +218,7 @@ void run(Channel& channel) {
   for (;; ++head.interval) {
     head.time = static_cast<double>(head.interval) * hello.step * hello.solid_steps;
     if (head.interval > fluid.first_interval) discs.insert(static_cast<int>(head.interval));
-    if (head.flags & kCheckpoint) {
-      const std::string part = parts.name(head.interval) + ".part";
-      discs.write(part, head);
-      parts.complete(part, head.interval);
-    }
+    if (head.flags & kCheckpoint) parts.keep(head.interval, discs.checkpoint(head));
     const auto reply = session.exchange(head, discs.states, discs.shapes);
     if (head.flags & kLast) return;
     head.flags = (reply.flags & kStop ? kLast : 0U) | (reply.flags & kCheckpoint);
@@ -244,7 +236,11 @@ int main(int argc, char** argv) {
   int code = kOk;
   try {
     world = connect(Role::Solid);
-    if (!world.coupled()) throw ProtocolError("no fluid program was started beside it", kBadInput);
+    if (!world.coupled())
+      throw ProtocolError(
+          "no fluid program was started beside it; start: mpirun -np 1 lbm scene.toml : -np 1 "
+          "reference_engine",
+          kBadInput);
     channel = make_mpi_channel(world, Role::Solid);
     run(*channel);
   } catch (const std::exception& error) {
