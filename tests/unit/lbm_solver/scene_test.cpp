@@ -138,14 +138,6 @@ TEST(Scene, DiscsThatOverlapThroughAPeriodicSideAreRefused) {
   EXPECT_NO_THROW(make_plan(scene));
 }
 
-TEST(Scene, ADiscWiderThanHalfAPeriodicLengthIsRefused) {
-  Scene scene = settling_disc();
-  scene.particles->diameter = {0.011, 0.011};
-  EXPECT_NO_THROW(make_plan(scene));
-  scene.box.sides[0] = SideKind::Periodic;
-  expect_refused(scene, "particles.diameter = 0.011 m exceeds half of a periodic length");
-}
-
 TEST(Scene, AMessageNamesAllFilesThatItMayMean) {
   const test::TemporaryFolder folder;
   const std::string scene = folder.write("scene.toml", test::good_scene()),
