@@ -207,13 +207,13 @@ def advantage(rows, family):
     return cost, error
 
 
-def said(factors):
-    """A sentence's worth of a list of factors; 0 where none of ours is as exact, or as cheap."""
-    good = [f for f in factors if f]
+def said(factors, better, none):
+    """A part of a sentence on a list of factors; 0 where none of ours is as exact, or as cheap."""
+    good = [f"{f:.2g}" if f < 10 else f"{f:.0f}" for f in sorted(factors) if f]
     if not good:
-        return "never 1"
-    text = f"{min(good):.2g}" if len(good) == 1 else f"{min(good):.2g} … {max(good):.2g}"
-    return text + ("" if len(good) == len(factors) else f" (in {len(good)} of {len(factors)} points)")
+        return f"at no point {none}"
+    text = good[0] if len(good) == 1 else f"{good[0]} … {good[-1]}"
+    return f"{text} times {better}" + ("" if len(good) == len(factors) else f" (in {len(good)} of {len(factors)} points)")
 
 
 def draw(case, rows):
@@ -286,7 +286,8 @@ def text_of(case, rows):
         if not cost:
             lines.append(f"None of {name}'s runs here came to its end.  ")
             continue
-        lines.append(f"Ours against the front of {name}: {said(cost)} times faster at its error, {said(error)} times more exact in its time.  ")
+        lines.append(f"Ours against the front of {name}: {said(cost, 'faster at its error', 'as exact')}, "
+                     f"{said(error, 'more exact in its time', 'as cheap')}.  ")
     good = [r for r in rows if r["family"] == OURS and r["status"] == "ok"]
     for wanted in (5.0, 2.0, 1.0):
         fitting = [r for r in good if doubt(r) <= wanted]
