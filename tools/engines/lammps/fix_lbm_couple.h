@@ -26,7 +26,7 @@ struct Coupling {
 /// spheres. Sends the group's particles every N steps and adds the loads that it gets for them at
 /// every step. LAMMPS does not tell what its fix gravity does, so the script must, for the fluid to
 /// compare. Where the fluid asks for a checkpoint, LAMMPS is set up anew at that step, as a restart
-/// would, and writes its restart file.
+/// would, and writes its restart file; a command `restart` of the script is off from then on.
 class FixLbmCouple final : public LAMMPS_NS::Fix {
  public:
   FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
