@@ -75,7 +75,7 @@ def picture_resolution(run, others):
     errors = [100 * (reynolds(r)[1].max() / RE_REFERENCE - 1) for r in runs]
     half = 100 * (RE_LITERATURE[1] / RE_REFERENCE - 1)
     figure, ax = plt.subplots(figsize=(5.4, 3.4))
-    ax.axhspan(-100 * RE_TOLERANCE, 100 * RE_TOLERANCE, color="0.85", label="tolerance")
+    ax.axhspan(-100 * RE_TOLERANCE, 100 * RE_TOLERANCE, color="0.92", label="tolerance")
     ax.axhspan(-half, half, color="0.8", label="spread of the literature")
     ax.plot(cells, errors, "o-", label="BPLBM")
     for r, x, y in zip(runs, cells, errors):
@@ -86,7 +86,8 @@ def picture_resolution(run, others):
     ax.set_xlabel("cells across the diameter")
     ax.set_ylabel("error of the largest Re [%]")
     ax.set_ylim(-4, 4)
-    ax.legend(loc="lower right")
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
+    figure.tight_layout()
     run.save(figure, "resolution.png")
 
 
