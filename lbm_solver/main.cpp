@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/coupling/run.h"
 #include "lbm_solver/io/scene_reader.h"
@@ -94,9 +95,9 @@ Decomposition divide(const Options& o, const Scene& scene, const Plan& plan, MPI
   MPI_Comm_size(comm, &size);
   if (size == 1) return Decomposition(plan.domain);
   if (plan.scheme != known_schemes().front())
-    throw InputError(scene.file + ": numerics.scheme",
-                     "= \"" + plan.scheme + "\" works on one rank only",
-                     "start one lbm, or take immersed_moving_boundary");
+    throw InputError(
+        fmt::format("{}: numerics.scheme = \"{}\" works on one rank only", scene.file, plan.scheme),
+        "start one lbm, or take immersed_moving_boundary");
   try {
     const Cell3 grid =
         o.grid.empty() ? choose_grid(plan.domain, size) : Cell3{o.grid[0], o.grid[1], o.grid[2]};

@@ -8,15 +8,13 @@
 
 namespace lbm {
 
-/// A scene or command line that cannot work. Grammar: <where>: <problem>; <what to do>,
-/// or <key> = <value> <problem>; <what to do>.
+/// A scene or command line that cannot work. Grammar: <where>: <problem>; <what to do>.
 class InputError : public protocol::ProtocolError {
  public:
   InputError(const std::string& problem, const std::string& remedy)
       : ProtocolError(problem + "; " + remedy, protocol::kBadInput) {}
   InputError(const std::string& where, const std::string& problem, const std::string& remedy)
-      : ProtocolError(where + (problem.starts_with('=') ? " " : ": ") + problem + "; " + remedy,
-                      protocol::kBadInput) {}
+      : ProtocolError(where + ": " + problem + "; " + remedy, protocol::kBadInput) {}
 };
 
 /// The computation left the range in which it means something.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/io/checkpoint.h"
 #include "protocol/program.h"

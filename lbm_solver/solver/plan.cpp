@@ -54,25 +54,25 @@ std::string place_text(const Scene& s, const Vec3& x) {
 void check_particles(const Scene& s) {
   const ParticleScene& p = *s.particles;
   if (s.coupling && p.density.lo < kLightest * s.fluid.density)
-    throw InputError(s.file + ": particles.density",
-                     fmt::format("= {:.6g} kg/m³ is below {} of the fluid's: the coupling is not "
-                                 "proven stable there",
-                                 p.density.lo, kLightest),
+    throw InputError(fmt::format("{}: particles.density = {:.6g} kg/m³ is below {} of the fluid's: "
+                                 "the coupling is not proven stable there",
+                                 s.file, p.density.lo, kLightest),
                      fmt::format("take at least {:.6g} kg/m³", kLightest * s.fluid.density));
   const double width = s.box.size.head(s.box.dimension).minCoeff();
   if (p.diameter.hi > width)
     throw InputError(
-        s.file + ": particles.diameter",
-        fmt::format("= {:.6g} m is wider than the box ({:.6g} m)", p.diameter.hi, width),
+        fmt::format("{}: particles.diameter = {:.6g} m is wider than the box ({:.6g} m)", s.file,
+                    p.diameter.hi, width),
         "take a smaller particle or a larger box");
   const auto half_periodic = [&](SideKind side, double length) {
     return side == SideKind::Periodic && p.diameter.hi > 0.5 * length;
   };
   for (int k = 0; k < s.box.dimension; ++k)
     if (half_periodic(s.box.sides[k], s.box.size[k]))
-      throw InputError(s.file + ": particles.diameter",
-                       fmt::format("= {:.6g} m exceeds half of a periodic length", p.diameter.hi),
-                       "take a longer box");
+      throw InputError(
+          fmt::format("{}: particles.diameter = {:.6g} m exceeds half of a periodic length", s.file,
+                      p.diameter.hi),
+          "take a longer box");
 }
 
 /// Discs that the scene places: inside the box, none in another.
@@ -214,8 +214,8 @@ void choose_solids(const Scene& s, Plan& plan) {
     plan.scheme = n.scheme;
     const bool links = n.scheme == "bounce_back" || n.scheme == "interpolated_bounce_back";
     if (s.box.dimension == 3 && !links)
-      throw InputError(s.file + ": numerics.scheme",
-                       "= \"" + n.scheme + "\" is there in two dimensions only",
+      throw InputError(fmt::format("{}: numerics.scheme = \"{}\" is there in two dimensions only",
+                                   s.file, n.scheme),
                        "take immersed_moving_boundary, bounce_back or interpolated_bounce_back");
     if (blocks) k.solid_term = "noble_torczynski";  // walls are covered cells under any scheme
     return;
@@ -257,9 +257,10 @@ void choose_kernel(const Scene& s, Plan& plan) {
   k.lattice = n.lattice != "auto" ? n.lattice : s.box.dimension == 2 ? "D2Q9" : "D3Q19";
   k.precision = n.single ? Precision::Single : Precision::Double;
   if (n.single && k.collision == "recursive_regularised")
-    throw InputError(s.file + ": numerics.collision",
-                     "= \"recursive_regularised\" is there in double precision only",
-                     "take central_moment, or precision = \"double\"");
+    throw InputError(
+        s.file +
+            ": numerics.collision = \"recursive_regularised\" is there in double precision only",
+        "take central_moment, or precision = \"double\"");
   k.turbulence = n.smagorinsky > 0.0 ? "smagorinsky" : "none";
   k.force = s.fluid.body_force.norm() > 0.0;
   choose_solids(s, plan);
@@ -293,8 +294,8 @@ void choose_substeps(const Scene& s, Plan& plan) {
   // 5 times the recommended step is 0.5 √(m/k), a quarter of the stability limit 2 √(m/k)
   if (plan.substeps * 5.0 < needed)
     throw InputError(
-        s.file + ": coupling.substeps",
-        fmt::format("= {} makes the solid's step too long for its contacts", plan.substeps),
+        fmt::format("{}: coupling.substeps = {} makes the solid's step too long for its contacts",
+                    s.file, plan.substeps),
         fmt::format("take at least {:.0f} ({})", needed, plan.substep_limit));
 }
 
@@ -324,82 +325,6 @@ Plan make_plan(const Scene& s) {
   judge_step(s, plan);
   if (s.coupling) choose_substeps(s, plan);
   return plan;
-}
-
-protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start,
-                           const std::optional<Block>& cells) {
-  const Vec3 top = s.box.origin + s.box.size;
-  const double half_depth = 0.5 * s.box.depth;
-  protocol::Hello h;
-  h.role = protocol::Role::Fluid;
-  h.program = "lbm";
-  h.program_version = BPLBM_VERSION;
-  const bool flat = s.box.dimension == 2;
-  h.dimension = s.box.dimension;
-  h.box_lo = {s.box.origin.x(), s.box.origin.y(), flat ? -half_depth : s.box.origin.z()};
-  h.box_hi = {top.x(), top.y(), flat ? half_depth : top.z()};
-  for (int k = 0; k < 3; ++k) h.periodic[k] = s.box.sides[k] == SideKind::Periodic;
-  if (flat) h.periodic[2] = 1;
-  h.depth = s.box.depth;
-  h.gravity = {s.fluid.gravity.x(), s.fluid.gravity.y(), s.fluid.gravity.z()};
-  h.buoyancy = s.coupling->buoyancy;
-  h.first_interval = start.interval;
-  h.schedule = s.coupling->overlapped ? protocol::Schedule::Overlapped : protocol::Schedule::Serial;
-  if (s.checkpoint_every > 0.0) h.features |= protocol::kCheckpoints;
-  h.step = plan.units.dt;
-  h.fluid_steps = plan.fluid_steps;
-  h.solid_steps = plan.substeps;
-  const ParticleScene& p = *s.particles;
-  h.radius = Range{0.5 * p.diameter.lo, 0.5 * p.diameter.hi};
-  h.density = p.density;
-  h.subdomain_lo = h.box_lo;
-  h.subdomain_hi = h.box_hi;
-  for (int k = 0; cells && k < s.box.dimension; ++k) {
-    h.subdomain_lo[k] = s.box.origin[k] + plan.units.dx * cells->begin[k];
-    if (cells->begin[k] + cells->size[k] < plan.domain.cells()[k])
-      h.subdomain_hi[k] = s.box.origin[k] + plan.units.dx * (cells->begin[k] + cells->size[k]);
-  }
-  h.reach = std::max(2.0, s.coupling->lubrication_range) * plan.units.dx;
-
-  const auto number = [&h](const std::string& name, double value) {
-    h.variables.push_back(
-        {name, fmt::format("{}", value)});  // shortest text that reads back the same
-  };
-  const auto whole = [&h](const std::string& name, std::int64_t value) {
-    h.variables.push_back({name, fmt::format("{}", value)});
-  };
-  const char* axis[] = {"x", "y", "z"};
-  for (int k = 0; k < 3; ++k) {
-    number(fmt::format("{}_lo", axis[k]), h.box_lo[k]);
-    number(fmt::format("{}_hi", axis[k]), h.box_hi[k]);
-    h.variables.push_back({fmt::format("boundary_{}", axis[k]), h.periodic[k] ? "p" : "f"});
-    whole(fmt::format("walls_{}", axis[k]), h.periodic[k] ? 0 : 1);
-  }
-  const double g = s.fluid.gravity.norm();
-  whole("dimension", s.box.dimension);
-  number("depth", s.box.depth);
-  number("gravity", g);
-  number("gravity_x", g > 0.0 ? s.fluid.gravity.x() / g : 0.0);
-  number("gravity_y", g > 0.0 ? s.fluid.gravity.y() / g : flat ? -1.0 : 0.0);
-  number("gravity_z", g > 0.0 ? s.fluid.gravity.z() / g : flat ? 0.0 : -1.0);
-  number("solid_step", plan.interval() / plan.substeps);
-  whole("substeps", plan.substeps);
-  whole("solid_steps_total", (plan.intervals - start.interval) * plan.substeps);
-  whole("restart", start.interval > 0 ? 1 : 0);
-  h.variables.push_back({"checkpoint", start.checkpoint});
-  h.variables.push_back({"restart_file", start.solid_part});
-  number("diameter_min", p.diameter.lo);
-  number("diameter_max", p.diameter.hi);
-  number("density_min", p.density.lo);
-  number("density_max", p.density.hi);
-  for (std::size_t i = 0; i < p.start.size(); ++i) {
-    number(fmt::format("particle{}_x", i + 1), p.start[i].x());
-    number(fmt::format("particle{}_y", i + 1), p.start[i].y());
-    if (!flat) number(fmt::format("particle{}_z", i + 1), p.start[i].z());
-  }
-  if (p.contact_stiffness) number("contact_stiffness", *p.contact_stiffness);
-  for (const auto& [name, value] : p.variables) h.variables.push_back({name, value});
-  return h;
 }
 
 }  // namespace lbm

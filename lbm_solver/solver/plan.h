@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,19 +44,6 @@ inline constexpr double kStopSpeed = 0.2;
 /// Noble–Torczynski above.
 /// @throws InputError
 Plan make_plan(const Scene& scene);
-
-/// Where a run begins, and where its checkpoints lie.
-struct RunStart {
-  std::int64_t interval = 0;                  ///< 0, or that of the checkpoint it goes on from
-  std::string checkpoint = "out/checkpoint";  ///< path without ending
-  std::string solid_part = "none";            ///< the solid's file of the one it goes on from
-};
-
-/// What the fluid says to the solid: everything of the plan that both must agree on, and the
-/// variables that its script may use instead of numbers of its own.
-/// @param cells  of this rank, where several share the box
-protocol::Hello make_hello(const Scene& scene, const Plan& plan, const RunStart& start = {},
-                           const std::optional<Block>& cells = {});
 
 /// A fluid as a scene wants it: boundaries and obstacles in place, initial state set.
 Fluid make_fluid(const Scene& scene, const Plan& plan, const Decomposition& ranks);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "tests/unit/lbm_solver/scene_files.h"
 
