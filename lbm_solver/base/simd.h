@@ -115,6 +115,40 @@ template <class... Packs>
 #endif
 }
 
+/// Three numbers, of which each lane of a pack takes one.
+class alignas(64) LaneChoice {
+ public:
+  LaneChoice() = default;
+  LaneChoice(double zero, double one, double two) : at_{zero, one, two} {}
+
+#if defined(__AVX512DQ__)
+  using Which = __m512i;
+  /// By whole numbers 0, 1, 2; from each lane of v the fraction is cut off.
+  [[gnu::always_inline]] static Which which(const Pack& v) {
+    return _mm512_cvttpd_epi64(static_cast<__m512d>(v));
+  }
+  [[gnu::always_inline]] Pack operator()(const Which& which) const {
+    return Pack(_mm512_permutexvar_pd(which, _mm512_load_pd(at_)));
+  }
+#else
+  struct Which {
+    Pack::mask_type one, two;
+  };
+  [[gnu::always_inline]] static Which which(const Pack& v) {
+    return {v >= Pack(1.0), v >= Pack(2.0)};
+  }
+  [[gnu::always_inline]] Pack operator()(const Which& which) const {
+    Pack value(at_[0]);
+    where(which.one, value) = Pack(at_[1]);
+    where(which.two, value) = Pack(at_[2]);
+    return value;
+  }
+#endif
+
+ private:
+  double at_[8] = {};
+};
+
 /// The SIMD lanes of a pack.
 [[gnu::always_inline]] inline Pack& lanes_of(Pack& v) {
   return v;

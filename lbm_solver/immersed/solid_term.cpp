@@ -37,6 +37,19 @@ constexpr SolidTerm::Halves kBelowSurface{mix(kNobleTorczynski.even, kEquilibriu
 
 }  // namespace
 
+CoveredCollision::Factors CoveredCollision::factors(const SolidTerm& term,
+                                                    SolidTerm::Parts SolidTerm::Halves::*half,
+                                                    const SolidTerm::Parts& own) {
+  const SolidTerm::Parts &surface = term.surface.*half, &whole = term.whole.*half,
+                         &core = term.core.*half;
+  // f + Ω^s has one f more than Ω^s; halves are of sums and differences.
+  const double kept = own.f - 1.0;
+  return {
+      {0.5 * own.f, {0.5 * (surface.f - kept), 0.5 * (whole.f - kept), 0.5 * (core.f - kept)}},
+      {own.fluid, {surface.fluid - own.fluid, whole.fluid - own.fluid, core.fluid - own.fluid}},
+      {own.solid, {surface.solid - own.solid, whole.solid - own.solid, core.solid - own.solid}}};
+}
+
 SolidTerm solid_term(const std::string& name, double tau) {
   if (name == "noble_torczynski") return {kNobleTorczynski, kNobleTorczynski, kNobleTorczynski};
   if (name == "holdych") return {kHoldych, kHoldych, kHoldych};

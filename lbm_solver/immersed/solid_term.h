@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <experimental/simd>
 #include <string>
 #include <vector>
 
+#include "lbm_solver/base/simd.h"
 #include "lbm_solver/collision/forcing.h"
 #include "lbm_solver/immersed/cover_block.h"
 #include "lbm_solver/immersed/weight.h"
@@ -42,16 +42,16 @@ class TwoEquilibria {
   struct Factors {
     V fluid, solid;
   };
-  [[gnu::always_inline]] TwoEquilibria(const V& drho, const Vector<L, V>& u, const Vector<L, V>& us,
-                                       const Factors& even, const Factors& odd) {
-    const V rho = drho + V(1.0);
-    const V a = rho * even.fluid, b = rho * even.solid;
+  [[gnu::always_inline]] TwoEquilibria(const Moments<L, V>& m, const Vector<L, V>& u,
+                                       const Vector<L, V>& us, const Factors& even,
+                                       const Factors& odd) {
+    const V rho = m.drho + V(1.0), even_solid = rho * even.solid, odd_solid = rho * odd.solid;
     Symmetric<L, V>::each_pair([&](auto k, auto l) __attribute__((always_inline)) {
-      stress_.template get<k, l>() = a * u[k] * u[l] + b * us[k] * us[l];
+      stress_.template get<k, l>() = even.fluid * m.j[k] * u[l] + even_solid * us[k] * us[l];
     });
-    base_ = (even.fluid + even.solid) * drho - V(1.5) * stress_.trace();
+    base_ = (even.fluid + even.solid) * m.drho - V(1.5) * stress_.trace();
     unroll<L::D>([&](auto k) __attribute__((always_inline)) {
-      j_[k] = rho * (odd.fluid * u[k] + odd.solid * us[k]);
+      j_[k] = odd.fluid * m.j[k] + odd_solid * us[k];
     });
   }
 
@@ -59,7 +59,7 @@ class TwoEquilibria {
 
   template <int i>
   [[gnu::always_inline]] lbm::Halves<V> pair() const {
-    return {V(L::w[i]) * (base_ + V(4.5) * stress_.template along<i>()),
+    return {V(L::w[i]) * base_ + V(4.5 * L::w[i]) * stress_.template along<i>(),
             V(3.0 * L::w[i]) * along<L, i>(j_)};
   }
 
@@ -69,91 +69,82 @@ class TwoEquilibria {
   Vector<L, V> j_;
 };
 
-/// Immersed-moving-boundary collision of a covered cell:
-///   f_i <- f_i + (1-B) Ω_i + B Ω_i^s
+/// Immersed-moving-boundary collision of a covered cell, of the fluid's part and of the solid's:
+///   f_i <- (1-B) (f_i + Ω_i) + B (f_i + Ω_i^s)
 /// with Ω of any collision operator. The force on the solid is the momentum that the cell loses to
 /// Ω^s,
 ///   F = -B Σ c_i Ω_i^s = k B rho (u - u_s),   rho u = j without any body force,
 /// an identity that holds to round-off, so no sum over directions is needed. A body force G acts on
 /// the fluid's part only; the solid's part, B G, is a force on the solid, as if a pressure gradient
 /// drove the fluid.
+///
+/// Where Ω relaxes with constant rates ω, the fluid's part is made of the same rows as Ω^s,
+///   f± + Ω± = (1-ω±) f± + ω± f±^eq(rho, u),
+/// and both parts become one row of factors, each linear in B. Any other operator collides for
+/// itself.
 class CoveredCollision {
  public:
-  CoveredCollision(const SolidTerm& term, const ImmersedWeight& weight)
-      : term_(term), weight_(weight) {}
+  /// @param collide  the operator of pure fluid
+  template <class Collision>
+  CoveredCollision(const SolidTerm& term, const ImmersedWeight& weight, const Collision& collide)
+      : weight_(weight) {
+    if constexpr (Collision::constant_rates) {
+      even_ = factors(term, &SolidTerm::Halves::even,
+                      {1.0 - collide.even_rate(), collide.even_rate(), 0.0});
+      odd_ = factors(term, &SolidTerm::Halves::odd,
+                     {1.0 - collide.odd_rate(), collide.odd_rate(), 0.0});
+    } else {
+      even_ = factors(term, &SolidTerm::Halves::even, {0.0, 0.0, 0.0});
+      odd_ = factors(term, &SolidTerm::Halves::odd, {0.0, 0.0, 0.0});
+    }
+  }
 
   /// What the cover map knows of a cell.
-  template <class L, class V>
+  template <class L>
   struct Cell {
-    V cover;          ///< as in CoverBlock
-    Vector<L, V> us;  ///< solid velocity at the cell centre, lattice units
+    Pack cover;          ///< as in CoverBlock
+    Vector<L, Pack> us;  ///< solid velocity at the cell centre, lattice units
   };
 
   /// @param f        populations [q] that arrived; overwritten
   /// @param collide  the operator of pure fluid
   /// @return the force on the solid, lattice units
-  template <class L, class V, class Collision>
-  [[gnu::always_inline]] Vector<L, V> apply(V (&f)[L::Q], const Collision& collide,
-                                            const Cell<L, V>& cell) const {
+  template <class L, class Collision>
+  [[gnu::always_inline]] Vector<L, Pack> apply(Pack (&f)[L::Q], const Collision& collide,
+                                               const Cell<L>& cell) const {
+    using V = Pack;
     const Moments<L, V> m = moments<L>(f);
-    const V rho = m.drho + V(1.0);
     const Vector<L, V> u = velocity<L>(m, NoForce<L>({}));
     V tau(weight_.tau);
     if constexpr (Collision::turbulent) tau = collide.relaxation_time(f, m);
     const V weight = weight_(fraction_of(cell.cover), tau);
-    const auto surface = cell.cover < V(kWhole), core = cell.cover == V(kCore);
-    const auto pick = [&](const double SolidTerm::Parts::*part,
-                          const SolidTerm::Parts SolidTerm::Halves::*half)
-        __attribute__((always_inline)) {
-      V value((term_.whole.*half).*part);
-      where(surface, value) = V((term_.surface.*half).*part);
-      where(core, value) = V((term_.core.*half).*part);
-      return weight * value;
+    const auto kind = LaneChoice::which(cell.cover + V(1.0 - kWhole));
+    const auto of = [&](const Factor& factor) __attribute__((always_inline)) {
+      return V(factor.fluid) + weight * factor.solid_less_fluid(kind);
     };
-    using Half = SolidTerm::Halves;
-    using Part = SolidTerm::Parts;
-    V even_f = pick(&Part::f, &Half::even), odd_f = pick(&Part::f, &Half::odd);
-    typename TwoEquilibria<L, V>::Factors even{pick(&Part::fluid, &Half::even),
-                                               pick(&Part::solid, &Half::even)};
-    typename TwoEquilibria<L, V>::Factors odd{pick(&Part::fluid, &Half::odd),
-                                              pick(&Part::solid, &Half::odd)};
-    const V strength = odd.solid * rho;
-    if constexpr (Collision::constant_rates) {
-      // The fluid's part is a relaxation too, with (1-B) times its rates.
-      const V rest = V(1.0) - weight;
-      const V even_rate = rest * V(collide.even_rate()), odd_rate = rest * V(collide.odd_rate());
-      even_f -= even_rate;
-      even.fluid += even_rate;
-      odd_f -= odd_rate;
-      odd.fluid += odd_rate;
-      const TwoEquilibria<L, V> eq(m.drho, u, cell.us, even, odd);
-      f[0] += even_f * f[0] + eq.rest();
-      unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
-        constexpr int i = 2 * p + 1;
-        const lbm::Halves<V> e = eq.template pair<i>();
-        const V even_gain = even_f * (V(0.5) * (f[i] + f[i + 1])) + e.even;
-        const V odd_gain = odd_f * (V(0.5) * (f[i] - f[i + 1])) + e.odd;
-        f[i] += even_gain + odd_gain;
-        f[i + 1] += even_gain - odd_gain;
-      });
-    } else {
-      V fluid[L::Q];
+    const V odd_solid = of(odd_.at_solid);
+    const V even_f = of(even_.f), odd_f = of(odd_.f);
+    const TwoEquilibria<L, V> eq(m, u, cell.us, {of(even_.at_fluid), of(even_.at_solid)},
+                                 {of(odd_.at_fluid), odd_solid});
+    V fluid[L::Q];
+    if constexpr (!Collision::constant_rates) {
       unroll<L::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
       collide(fluid);
-      even_f += weight;
-      odd_f += weight;
-      const V rest = V(1.0) - weight;
-      const TwoEquilibria<L, V> eq(m.drho, u, cell.us, even, odd);
-      f[0] = rest * fluid[0] + even_f * f[0] + eq.rest();
-      unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
-        constexpr int i = 2 * p + 1;
-        const lbm::Halves<V> e = eq.template pair<i>();
-        const V even_part = even_f * (V(0.5) * (f[i] + f[i + 1])) + e.even;
-        const V odd_part = odd_f * (V(0.5) * (f[i] - f[i + 1])) + e.odd;
-        f[i] = rest * fluid[i] + even_part + odd_part;
-        f[i + 1] = rest * fluid[i + 1] + even_part - odd_part;
-      });
     }
+    f[0] = even_f * (f[0] + f[0]) + eq.rest();
+    unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
+      constexpr int i = 2 * p + 1;
+      const lbm::Halves<V> e = eq.template pair<i>();
+      const V even = even_f * (f[i] + f[i + 1]) + e.even;
+      const V odd = odd_f * (f[i] - f[i + 1]) + e.odd;
+      f[i] = even + odd;
+      f[i + 1] = even - odd;
+    });
+    if constexpr (!Collision::constant_rates) {
+      const V rest = V(1.0) - weight;
+      unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] += rest * fluid[q]; });
+    }
+    const V strength = odd_solid * (m.drho + V(1.0));
     Vector<L, V> force;
     unroll<L::D>([&](auto a) __attribute__((always_inline)) {
       force[a] = strength * (u[a] - cell.us[a]);
@@ -163,8 +154,22 @@ class CoveredCollision {
   }
 
  private:
-  SolidTerm term_;
+  /// (1-B) fluid + B solid
+  struct Factor {
+    double fluid = 0.0;
+    LaneChoice solid_less_fluid;  ///< of a cell at the surface, covered whole, in the core
+  };
+  /// Of a sum of two opposite populations or their difference, and of the equilibria's halves.
+  struct Factors {
+    Factor f, at_fluid, at_solid;
+  };
+
+  /// @param own  what the fluid's collision makes of each
+  static Factors factors(const SolidTerm& term, SolidTerm::Parts SolidTerm::Halves::*half,
+                         const SolidTerm::Parts& own);
+
   ImmersedWeight weight_;
+  Factors even_, odd_;
 };
 
 }  // namespace lbm

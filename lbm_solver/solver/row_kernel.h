@@ -81,7 +81,7 @@ class RowKernel final : public Kernel {
   explicit RowKernel(const KernelChoice& c) : collide_(c.parameters) {
     if (c.solid_term != "none")
       covered_.emplace(solid_term(c.solid_term, c.parameters.tau),
-                       ImmersedWeight(c.weight, c.parameters.tau));
+                       ImmersedWeight(c.weight, c.parameters.tau), collide_);
   }
 
   void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover,
@@ -149,7 +149,7 @@ class RowKernel final : public Kernel {
   template <class Access>
   [[gnu::noinline]] void covered(const Row& row, int x, const CoverMap& cover, CoverBlock& block,
                                  const Access& lanes) const {
-    CoveredCollision::Cell<L, Pack> cell;
+    CoveredCollision::Cell<L> cell;
     Pack scale;
     const bool shared = block.next;
     if (shared) [[unlikely]] {
