@@ -13,6 +13,7 @@
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/coupling/run.h"
 #include "lbm_solver/io/scene_reader.h"
+#include "protocol/command_line.h"
 #include "protocol/mpi_channel.h"
 #include "protocol/program.h"
 #include "protocol/trace.h"
@@ -153,7 +154,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Lattice Boltzmann fluid of a coupled job: mpirun -np 1 lbm SCENE : -np 1 liggghts -in FILE"};
   define(app, options);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = protocol::read_command_line(app, "lbm", argc, argv)) return *code;
   if (options.check) try {
       return check(options);
     } catch (const std::exception& error) {

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "protocol/command_line.h"
 #include "protocol/mpi_channel.h"
 #include "protocol/program.h"
 #include "protocol/session.h"
@@ -104,7 +105,7 @@ int main(int argc, char** argv) {
   app.add_option("--tolerance", options.tolerance, "largest relative difference that passes");
   app.add_option("--timeout", options.timeout, "longest wait for the partner [s]");
   app.add_option("trace", options.path, "file written with --record")->required();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = read_command_line(app, "replay", argc, argv)) return *code;
 
   MPI_Init(&argc, &argv);
   std::unique_ptr<Channel> channel;

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "protocol/command_line.h"
 #include "protocol/trace_compare.h"
 
 namespace {
@@ -122,7 +123,7 @@ int main(int argc, char** argv) {
   auto* diff_command = app.add_subcommand("diff", "the first difference of two recordings");
   diff_command->add_option("a", a)->required();
   diff_command->add_option("b", b)->required();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = read_command_line(app, "trace", argc, argv)) return *code;
   try {
     if (cut_command->parsed()) return cut(a, b, intervals);
     if (plot_command->parsed()) return plot(a, picture, particle);

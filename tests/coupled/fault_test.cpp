@@ -105,6 +105,18 @@ TEST(BadInput, MissingScript) {
               "lbm | error | the solid program stopped"});
 }
 
+TEST(BadInput, OptionThatIsNone) {
+  SettlingDisc scene;
+  expect_end(scene.run("--outt there"), 2,
+             {"lbm | error | The following argument was not expected: --outt"});
+}
+
+TEST(BadInput, OptionThatIsNoneOfAnyProgram) {
+  for (const std::string program : {"lbm", "replay", "trace"})
+    expect_end(test::run(test::kBin + "/" + program + " --nonsense", ".", kLimit), 2,
+               {program + " | error | ", program + " --help shows what there is"});
+}
+
 TEST(BadInput, OutputFolderThatCannotBe) {
   SettlingDisc scene;
   expect_end(scene.run("--out /proc/nowhere"), 2, {"lbm | error | /proc/nowhere"});

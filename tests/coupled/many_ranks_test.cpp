@@ -45,7 +45,13 @@ probe_every = 0.001
 fields_every = 0.02
 )";
 
-constexpr double kDigits = 2e-12;  // one unit of the last digit written, and what it may round to
+constexpr double kAlike = 1e-12;
+
+/// One unit in the last of the twelve digits that a probe is written with: by so much rounding
+/// parts numbers that are alike. (At full precision these trajectories agree to 1e-13.)
+double last_place(double number) {
+  return number == 0.0 ? 0.0 : std::pow(10.0, std::floor(std::log10(number)) - 11.0);
+}
 
 class ManyRanks : public testing::TestWithParam<std::string> {
  protected:
@@ -80,8 +86,8 @@ class ManyRanks : public testing::TestWithParam<std::string> {
     }
     return table;
   }
-  /// @param digits  relative to the largest number of its column
-  static void expect_near(const Table& a, const Table& b, double digits) {
+  /// Alike in relation to the largest number of a column.
+  static void expect_alike(const Table& a, const Table& b) {
     ASSERT_EQ(a.size(), b.size());
     ASSERT_GT(a.size(), 100U);
     for (std::size_t column = 0; column < a[0].size(); ++column) {
@@ -91,7 +97,7 @@ class ManyRanks : public testing::TestWithParam<std::string> {
         largest = std::max(largest, std::abs(a[i][column]));
         difference = std::max(difference, std::abs(a[i][column] - b[i][column]));
       }
-      EXPECT_LE(difference, digits * largest) << "column " << column;
+      EXPECT_LE(difference, kAlike * largest + 1.01 * last_place(largest)) << "column " << column;
     }
   }
   test::TemporaryFolder folder_;
@@ -101,18 +107,18 @@ TEST_P(ManyRanks, GiveTheSameTrajectories) {
   run("one", 1, 1);
   const Table one = probes("one");
   run("many", 2, 1);
-  expect_near(one, probes("many"), kDigits);
+  expect_alike(one, probes("many"));
   run("many", 4, 3);
-  expect_near(one, probes("many"), kDigits);
+  expect_alike(one, probes("many"));
   run("many", 4, 2, "--grid 2 2 1");  // rows are cut
-  expect_near(one, probes("many"), kDigits);
+  expect_alike(one, probes("many"));
 }
 
 TEST_P(ManyRanks, GoOnFromACheckpointOfOthers) {
   run("one", 1, 1);
   run("many", 2, 1, "--until 0.05");
   run("many", 3, 1, "--restart --grid 1 3 1");
-  expect_near(probes("one"), probes("many"), kDigits);
+  expect_alike(probes("one"), probes("many"));
 }
 
 // Heavier than the fluid, and so light that a virtual mass is at work.

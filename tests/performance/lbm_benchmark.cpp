@@ -6,13 +6,16 @@
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "lbm_solver/immersed/boundary_trace.h"
 #include "lbm_solver/solver/fluid.h"
+#include "protocol/command_line.h"
 #include "tests/performance/aos_baseline.h"
 
 namespace {
@@ -258,6 +261,14 @@ double rate_of(const Collector& c, const std::string& name) {
   return found == c.rate.end() ? std::nan("") : found->second;
 }
 
+/// @return  what is wrong with it, as CLI11 wants to hear it
+std::string is_regular_expression(const std::string& text) try {
+  const std::regex compiled(text);
+  return {};
+} catch (const std::regex_error& error) {
+  return error.what();
+}
+
 nlohmann::json report(const Collector& c) {
   nlohmann::json list = nlohmann::json::array();
   fmt::print("{:42} {:>8} {:>6} {:>8} {:>12}\n", "kernel", "MLUPS", "roof", "vs_pure",
@@ -302,7 +313,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> lattices{"D2Q9"}, precisions{"double"};
   CLI::App app{"Speed of every kernel, as ratios in one run"};
   app.add_option("--filter", filter,
-                 "regular expression on the names; bandwidth is always measured");
+                 "regular expression on the names; bandwidth is always measured")
+      ->check(is_regular_expression);
   app.add_option("--json", json, "write the table to this file");
   app.add_option("--threads", threads, "largest number of threads");
   app.add_option("--grid", grids, "cells along a side (else 200 and 1600, in 3D 32 and 160)");
@@ -310,7 +322,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(known_lattices()));
   app.add_option("--precision", precisions, "double, single")
       ->check(CLI::IsMember({"double", "single"}));
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = protocol::read_command_line(app, "lbm_benchmark", argc, argv)) return *code;
   for (const std::string& lattice : lattices)
     for (const std::string& precision : precisions) {
       const bool flat = lattice == D2Q9::name;
@@ -325,6 +337,11 @@ int main(int argc, char** argv) {
       add({fmt::format("particles {} {}", count, part)},
           [=](benchmark::State& s) { particle_benchmark(s, count, part); });
 
+  const std::regex wanted(filter);
+  if (std::ranges::none_of(entries, [&](const Entry& e) { return regex_search(e.name, wanted); })) {
+    fmt::print(stderr, "lbm_benchmark | error | no kernel's name has '{}' in it\n", filter);
+    return protocol::kBadInput;
+  }
   std::vector<std::string> words{argv[0], "--benchmark_enable_random_interleaving=true",
                                  "--benchmark_filter=bandwidth|" + filter};
   std::vector<char*> arguments;

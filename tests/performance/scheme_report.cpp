@@ -21,6 +21,7 @@
 
 #include "lbm_solver/immersed/solid_fraction.h"
 #include "lbm_solver/solver/fluid.h"
+#include "protocol/command_line.h"
 #include "tests/reference/disc_area.h"
 
 namespace {
@@ -222,7 +223,7 @@ int main(int argc, char** argv) {
   app.add_option("--cells", sizes, "cells a period; D/h is about half of it");
   app.add_option("--filter", filter, "rows whose name contains this text");
   app.add_option("--json", json, "write the table to this file");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto code = protocol::read_command_line(app, "scheme_report", argc, argv)) return *code;
 
   const std::vector<double> taus{0.505, 0.6, 1.0, 1.5};
   if (quick) sizes = {10, 20};

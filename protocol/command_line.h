@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "protocol/errors.h"
+
+namespace protocol {
+
+/// Reads the command line into what `app` was told of.
+/// @param program  named in the message of a mistake: "PROGRAM | error | …"
+/// @return  the exit code to end with (kOk after --help, kBadInput after a mistake), or nothing:
+///          go on
+inline std::optional<int> read_command_line(CLI::App& app, const std::string& program, int argc,
+                                            char** argv) {
+  app.failure_message([&program](const CLI::App* /*app*/, const CLI::Error& error) {
+    return program + " | error | " + error.what() + "; " + program +
+           " --help shows what there is\n";
+  });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kBadInput;
+  }
+  return std::nullopt;
+}
+
+}  // namespace protocol
