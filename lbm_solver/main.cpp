@@ -28,7 +28,7 @@ struct Options {
   std::string record, progress = "auto";
   std::vector<int> grid;
   int threads = 0;
-  bool check = false, liggghts_vars = false;
+  bool check = false, liggghts_vars = false, list = false;
 };
 
 void add_scene(CLI::App& app, Options& o) {
@@ -55,6 +55,7 @@ void define(CLI::App& app, Options& o) {
       ->capture_default_str();
   app.add_option("--set", o.run.set, "name of the parameter set, for the summary");
   app.add_option("--variant", o.run.variant, "name of the variant, for the summary");
+  app.add_flag("--list", o.list, "lattices, operators, terms and schemes that a scene may name");
   add_scene(app, o);
   auto* check = app.add_subcommand("check", "look at a scene without running it");
   check->add_flag("--liggghts-vars", o.liggghts_vars, "print the -var options for LIGGGHTS");
@@ -155,6 +156,10 @@ int main(int argc, char** argv) {
       "Lattice Boltzmann fluid of a coupled job: mpirun -np 1 lbm SCENE : -np 1 liggghts -in FILE"};
   define(app, options);
   if (const auto code = protocol::read_command_line(app, "lbm", argc, argv)) return *code;
+  if (options.list) {
+    fmt::print("{}", describe_choices());
+    return protocol::kOk;
+  }
   if (options.check) try {
       return check(options);
     } catch (const std::exception& error) {

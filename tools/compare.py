@@ -6,6 +6,7 @@ Differences are to the first folder. Exit code 2 if a folder holds no finished r
 """
 
 import argparse
+import pathlib
 import sys
 
 import numpy as np
@@ -45,9 +46,15 @@ def parted(run, other):
 
 def main():
     p = argparse.ArgumentParser(prog="tools/compare", description=__doc__.splitlines()[0])
-    p.add_argument("folders", nargs="+", metavar="FOLDER", help="output folders, as out/soil_erosion")
+    p.add_argument("folders", nargs="*", metavar="FOLDER", help="output folders, as out/soil_erosion")
+    p.add_argument("--list", action="store_true", help="the finished runs in out/, and nothing else")
     p.add_argument("--parting", action="store_true", help="say also how long the particles go alike")
     args = p.parse_args()
+    if args.list:
+        print("\n".join(sorted(str(path.parent) for path in pathlib.Path("out").glob("*/summary.json"))))
+        return 0
+    if not args.folders:
+        p.error("which runs? --list shows those in out/")
     runs = []
     for folder in args.folders:
         try:

@@ -14,6 +14,7 @@ import tomllib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PatchCollection
+from launch import scenes
 from pictures import read_table
 
 CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
@@ -130,8 +131,15 @@ def draw(name):
 
 def main():
     p = argparse.ArgumentParser(prog="tools/draw_setup", description=__doc__.splitlines()[0])
-    p.add_argument("scenes", nargs="+", metavar="SCENE", help="folders of cases/")
-    for name in p.parse_args().scenes:
+    p.add_argument("scenes", nargs="*", metavar="SCENE", help="folders of cases/")
+    p.add_argument("--list", action="store_true", help="the scenes, and nothing else")
+    args = p.parse_args()
+    if args.list:
+        print("\n".join(scenes()))
+        return 0
+    if not args.scenes:
+        p.error("which scene? --list shows them")
+    for name in args.scenes:
         if not (CASES / name / "scene.toml").exists():
             print(f"draw_setup | error | no scene '{name}'; tools/run --list shows them", file=sys.stderr)
             return 2

@@ -72,6 +72,7 @@ def parser():
     p.add_argument("--restart=fault", dest="restart", action="store_const", const="fault",
                    help="go on from the states that both programs kept at a fault")
     p.add_argument("--out", metavar="DIR", help="default: out/SCENE[-SET][-VARIANT]")
+    p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
     p.add_argument("--no-study", action="store_true", help="leave out the scene's comparison runs")
     p.epilog = "A scene may have choices of its own (--list), as --start 5 of disc_migration."
     return p
@@ -80,6 +81,8 @@ def parser():
 def arguments(words):
     """Checked arguments; `own` holds the scene's own choices as pairs (KEY, VALUE)."""
     args, rest = parser().parse_known_args(words)
+    if not args.scene and rest:
+        fail(f"no option '{rest[0]}' without a scene; see tools/run --help")
     if not args.scene:
         return args
     if args.scene not in scenes():
@@ -242,6 +245,8 @@ def main():
         return 0
     if not args.scene:
         fail("which scene? tools/run --list shows them")
+    if args.look:
+        return 0
     out = pathlib.Path(args.out).resolve() if args.out else out_folder(args)
     others = comparison_runs(args)
     code = run_job(args, out) or study(args, others, out)

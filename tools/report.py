@@ -314,8 +314,13 @@ def main():
     p.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(names)}; default: all")
     p.add_argument("--quick", action="store_true", help="under ten minutes (default)")
     p.add_argument("--full", action="store_true", help="more cells, steps and cases; under ninety minutes")
+    p.add_argument("--list", action="store_true", help="the cases, and nothing else")
     p.add_argument("--again", action="store_true", help="run also what has been run before")
     args = p.parse_args()
+    if args.list:
+        print("\n".join([f"{name:10} {case[5]}" for name, case in CASES_OF.items()]
+                        + ["stability  hard cases, each with every operator and scheme", "features   each scene against everything on"]))
+        return 0
     unknown = [c for c in args.cases if c not in names]
     if unknown:
         print(f"report | error | no case '{unknown[0]}'; there are: {', '.join(names)}", file=sys.stderr)

@@ -2,11 +2,14 @@
 #include "lbm_solver/coupling/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
+
+#include "lbm_solver/immersed/solid_term.h"
 
 namespace lbm {
 namespace {
@@ -69,6 +72,18 @@ std::string boundary_text(const Scene& s) {
 }
 
 }  // namespace
+
+std::string describe_choices() {
+  std::string out;
+  const auto line = [&out](const char* key, const std::vector<std::string>& names) {
+    out += fmt::format("{:<21} {}\n", key, fmt::join(names, ", "));
+  };
+  line("numerics.lattice", known_lattices());
+  line("numerics.collision", known_collisions());
+  line("numerics.solid_term", known_solid_terms());
+  line("numerics.scheme", known_schemes());
+  return out + "or \"auto\"; lbm_solver/README.md has every key of a scene\n";
+}
 
 std::string describe(const Scene& s, const Plan& p) {
   std::string out = fmt::format("scene        {} ({})\n", s.title, s.file);

@@ -8,6 +8,9 @@
 
 namespace lbm {
 
+/// Lattices, operators, solid terms and schemes that a scene may name.
+std::string describe_choices();
+
 /// The resolved scene and its unit table, for `lbm check` and the head of a log.
 std::string describe(const Scene& scene, const Plan& plan);
 

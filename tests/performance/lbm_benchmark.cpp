@@ -309,12 +309,14 @@ nlohmann::json report(const Collector& c) {
 int main(int argc, char** argv) {
   std::string filter = ".", json;
   int threads = 2;
+  bool names = false;
   std::vector<int> grids;
   std::vector<std::string> lattices{"D2Q9"}, precisions{"double"};
   CLI::App app{"Speed of every kernel, as ratios in one run"};
   app.add_option("--filter", filter,
                  "regular expression on the names; bandwidth is always measured")
       ->check(is_regular_expression);
+  app.add_flag("--list", names, "the kernels' names, and nothing else");
   app.add_option("--json", json, "write the table to this file");
   app.add_option("--threads", threads, "largest number of threads");
   app.add_option("--grid", grids, "cells along a side (else 200 and 1600, in 3D 32 and 160)");
@@ -339,8 +341,13 @@ int main(int argc, char** argv) {
 
   const std::regex wanted(filter);
   if (std::ranges::none_of(entries, [&](const Entry& e) { return regex_search(e.name, wanted); })) {
-    fmt::print(stderr, "lbm_benchmark | error | no kernel's name has '{}' in it\n", filter);
+    fmt::print(stderr, "lbm_benchmark | error | no kernel's name has '{}' in it; --list\n", filter);
     return protocol::kBadInput;
+  }
+  if (names) {
+    for (const Entry& e : entries)
+      if (regex_search(e.name, wanted)) fmt::print("{}\n", e.name);
+    return protocol::kOk;
   }
   std::vector<std::string> words{argv[0], "--benchmark_enable_random_interleaving=true",
                                  "--benchmark_filter=bandwidth|" + filter};

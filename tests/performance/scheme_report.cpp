@@ -215,13 +215,14 @@ nlohmann::json fraction_rules() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  bool quick = false;
+  bool quick = false, names = false;
   std::vector<int> sizes{10, 20, 40};
   std::string json, filter;
   CLI::App app{"Error, noise and cost of every fluid-solid scheme on the same cases"};
   app.add_flag("--quick", quick, "D/h = 5 and 10 only");
   app.add_option("--cells", sizes, "cells a period; D/h is about half of it");
   app.add_option("--filter", filter, "rows whose name contains this text");
+  app.add_flag("--list", names, "the rows' names, and nothing else");
   app.add_option("--json", json, "write the table to this file");
   if (const auto code = protocol::read_command_line(app, "scheme_report", argc, argv)) return *code;
 
@@ -238,6 +239,14 @@ int main(int argc, char** argv) {
   std::vector<Row> rows;
   for (const Row& row : kRows)
     if (row.name.find(filter) != std::string::npos) rows.push_back(row);
+  if (rows.empty()) {
+    fmt::print(stderr, "scheme_report | error | no row's name has '{}' in it; --list\n", filter);
+    return protocol::kBadInput;
+  }
+  if (names) {
+    for (const Row& row : rows) fmt::print("{}\n", row.name);
+    return protocol::kOk;
+  }
   std::vector<Job> jobs;
   for (const Row& row : rows)
     for (const int n : sizes)

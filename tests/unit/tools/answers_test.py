@@ -1,0 +1,43 @@
+"""Every tool answers --help, those with something to choose --list, and a mistake with code 2; nothing is built for it."""
+
+import pathlib
+import subprocess
+import unittest
+
+TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
+ALL = sorted(p.name for p in TOOLS.iterdir() if p.is_file() and not p.suffix)
+LISTS = {"build": "release", "compare": "", "draw_setup": "settling_disc", "fuzz": "codec", "install": "cmake",
+         "report": "stability", "run": "settling_disc", "test": "coupled"}
+
+
+def answer(tool, *words):
+    return subprocess.run([TOOLS / tool, *words], capture_output=True, text=True, timeout=30)
+
+
+class Answers(unittest.TestCase):
+    def test_help(self):
+        self.assertGreater(len(ALL), 8)
+        for tool in ALL:
+            with self.subTest(tool):
+                said = answer(tool, "--help")
+                self.assertEqual(said.returncode, 0, said.stderr)
+                self.assertIn(tool, said.stdout)
+                self.assertNotIn("build |", said.stdout)
+
+    def test_list(self):
+        for tool, word in LISTS.items():
+            with self.subTest(tool):
+                said = answer(tool, "--list")
+                self.assertEqual(said.returncode, 0, said.stderr)
+                self.assertIn(word, said.stdout)
+
+    def test_mistake(self):
+        for tool in set(ALL) - {"make_packing", "report"}:  # these build first
+            with self.subTest(tool):
+                said = answer(tool, "--nonsense")
+                self.assertEqual(said.returncode, 2, said.stdout)
+                self.assertIn("--nonsense", said.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
