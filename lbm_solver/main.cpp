@@ -67,7 +67,8 @@ int check(const Options& o) {
   const Scene scene = read_scene(o.scene);
   const Plan plan = make_plan(scene);
   if (!o.liggghts_vars) {
-    fmt::print("{}{}", describe(scene, plan), describe_cost(scene, plan));
+    fmt::print("{}", describe(scene, plan));
+    fmt::print("{}", describe_cost(scene, plan));
     return protocol::kOk;
   }
   if (!scene.coupling) throw InputError(scene.file, "has no [coupling]", "there are no variables");

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/field/populations.h"
 
+#include <fmt/format.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <new>
+
+#include "lbm_solver/base/errors.h"
 
 namespace lbm {
 namespace {
@@ -15,6 +18,11 @@ constexpr std::ptrdiff_t kLineBytes = 64;
 
 std::ptrdiff_t round_up(std::ptrdiff_t n, std::ptrdiff_t to) {
   return (n + to - 1) / to * to;
+}
+
+/// Bytes of memory of this machine.
+double machine_memory() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace
@@ -36,8 +44,13 @@ Populations::Populations(const Lattice& lattice, const Cell3& cells, Precision p
   const bool huge = beyond_caches();
   const std::size_t alignment = huge ? kHugePage : kPage;
   bytes_ = (bytes_ + alignment - 1) / alignment * alignment;
-  memory_.reset(std::aligned_alloc(alignment, bytes_));
-  if (!memory_) throw std::bad_alloc();
+  const auto bytes = static_cast<double>(bytes_);
+  if (bytes < machine_memory()) memory_.reset(std::aligned_alloc(alignment, bytes_));
+  if (!memory_)
+    throw InputError(fmt::format("the lattice of {} × {} × {} cells needs {:.3g} GB, this machine "
+                                 "has {:.3g}",
+                                 nx(), ny(), nz(), 1e-9 * bytes, 1e-9 * machine_memory()),
+                     "take larger cells, single precision, or ranks on more machines");
 #ifdef MADV_HUGEPAGE
   if (huge) madvise(memory_.get(), bytes_, MADV_HUGEPAGE);
 #endif

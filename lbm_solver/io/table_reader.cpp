@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "lbm_solver/base/errors.h"
 
@@ -27,8 +30,23 @@ const toml::table& no_table() {
 std::string bounds_text(const Bounds& b, const std::string& unit) {
   const std::string u = unit.empty() ? "" : " " + unit;
   if (b.exclusive && b.lo == 0.0 && std::isinf(b.hi)) return "a positive number" + u;
+  if (std::isinf(b.lo) && std::isinf(b.hi)) return "a number" + u;
   if (std::isinf(b.hi)) return fmt::format("a number of at least {}{}", b.lo, u);
   return fmt::format("a number from {} to {}{}", b.lo, b.hi, u);
+}
+
+/// The smallest number of letters to change, add or take away that makes one word of the other.
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t corner = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = corner + (a[i - 1] == b[j - 1] ? 0 : 1);
+      corner = std::exchange(row[j], std::min({changed, row[j] + 1, row[j - 1] + 1}));
+    }
+  }
+  return row.back();
 }
 
 }  // namespace
@@ -53,9 +71,16 @@ const toml::node* TableReader::find(const std::string& key) {
   return table_.get(key);
 }
 
+std::string TableReader::misspelt(const std::string& key) const {
+  for (const auto& [other, node] : table_)
+    if (const std::string name(other.str()); !asked_.contains(name) && distance(key, name) <= 2)
+      return fmt::format(", but there is '{}'", name);
+  return {};
+}
+
 const toml::node& TableReader::need(const std::string& key, const std::string& what) {
   const toml::node* node = find(key);
-  if (!node) throw InputError(where(nullptr, key) + " is missing", "give " + what);
+  if (!node) throw InputError(where(nullptr, key) + " is missing" + misspelt(key), "give " + what);
   return *node;
 }
 

@@ -69,6 +69,8 @@ class TableReader {
 
  private:
   const toml::node* find(const std::string& key);
+  /// What stands in the table in place of a key that is missing.
+  std::string misspelt(const std::string& key) const;
   const toml::node& need(const std::string& key, const std::string& what);
   std::string where(const toml::node* node, const std::string& key) const;
   double to_number(const toml::node& node, const std::string& key, const Bounds& bounds,

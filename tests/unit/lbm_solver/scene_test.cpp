@@ -55,6 +55,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "kinematic_viscosity = 1e-5",
                 "",
                 {"fluid.kinematic_viscosity", "missing"}},
+        Spoiled{"misspelt_table", "[run]", "[runs]", {":1: run is missing, but there is 'runs'"}},
+        Spoiled{"text_for_a_length",
+                "size = [0.02, 0.06]",
+                "size = [0.02, \"6 cm\"]",
+                {"box.size = '6 cm' is not a number; give a number [m]"}},
         Spoiled{"missing_table", "[run]\nend_time = 1.0", "[output2]", {"run", "missing"}},
         Spoiled{"negative_viscosity",
                 "= 1e-5",
@@ -136,6 +141,16 @@ TEST(Scene, DiscsThatOverlapThroughAPeriodicSideAreRefused) {
   expect_refused(scene, "overlap by 0.0015 m");
   scene.particles->start[1].y() = 0.045;
   EXPECT_NO_THROW(make_plan(scene));
+}
+
+TEST(Scene, ALatticeLargerThanAnyMachineIsRefused) {
+  try {
+    const Populations f(lattice("D3Q19"), {20000, 20000, 20000}, Precision::Double);
+    FAIL() << "allocated";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find(" cells needs 1.22e+06 GB"), std::string::npos)
+        << e.what();
+  }
 }
 
 TEST(Scene, AMessageNamesAllFilesThatItMayMean) {
