@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/solver/scene_check.h"
 
 namespace lbm {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 constexpr double kStepFractionOfContact = 0.1;  // solid step / √(m/k): the papers' λ
 constexpr double kLimitReynoldsCell = 5.0;      // beyond: fixed-Λ TRT gives noisy forces
 constexpr double kDensityChange = 0.03;         // that a pressure difference may cause
-constexpr double kLightest = 0.1;               // density of a particle over the fluid's
 constexpr double kFewCells = 4.0;               // a diameter below which nothing is claimed
 
 double cell_size(const Scene& s) {
@@ -44,65 +44,6 @@ int cells_along(const Scene& s, double length, double dx, const char* axis) {
 
 Side to_side(SideKind kind) {
   return kind == SideKind::Wall ? Side::Wall : Side::Periodic;
-}
-
-std::string place_text(const Scene& s, const Vec3& x) {
-  return s.box.dimension == 2 ? fmt::format("[{:.6g}, {:.6g}]", x.x(), x.y())
-                              : fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x.x(), x.y(), x.z());
-}
-
-void check_particles(const Scene& s) {
-  const ParticleScene& p = *s.particles;
-  if (s.coupling && p.density.lo < kLightest * s.fluid.density)
-    throw InputError(fmt::format("{}: particles.density = {:.6g} kg/m³ is below {} of the fluid's: "
-                                 "the coupling is not proven stable there",
-                                 s.file, p.density.lo, kLightest),
-                     fmt::format("take at least {:.6g} kg/m³", kLightest * s.fluid.density));
-  const double width = s.box.size.head(s.box.dimension).minCoeff();
-  if (p.diameter.hi > width)
-    throw InputError(
-        fmt::format("{}: particles.diameter = {:.6g} m is wider than the box ({:.6g} m)", s.file,
-                    p.diameter.hi, width),
-        "take a smaller particle or a larger box");
-  const auto half_periodic = [&](SideKind side, double length) {
-    return side == SideKind::Periodic && p.diameter.hi > 0.5 * length;
-  };
-  for (int k = 0; k < s.box.dimension; ++k)
-    if (half_periodic(s.box.sides[k], s.box.size[k]))
-      throw InputError(
-          fmt::format("{}: particles.diameter = {:.6g} m exceeds half of a periodic length", s.file,
-                      p.diameter.hi),
-          "take a longer box");
-}
-
-/// Discs that the scene places: inside the box, none in another.
-void check_starts(const Scene& s) {
-  const ParticleScene& p = *s.particles;
-  const double r = 0.5 * p.diameter.lo;
-  const int d = s.box.dimension;
-  for (std::size_t i = 0; i < p.start.size(); ++i) {
-    const Vec3& x = p.start[i];
-    for (int k = 0; k < d; ++k) {
-      const double margin = s.box.sides[k] == SideKind::Wall ? r : 0.0;
-      const double lo = s.box.origin[k] + margin, hi = s.box.origin[k] + s.box.size[k] - margin;
-      if (x[k] < lo - 1e-12 || x[k] > hi + 1e-12)
-        throw InputError(
-            s.file + ": particles.start",
-            fmt::format("{} with radius {:.6g} m lies outside the box", place_text(s, x), r),
-            fmt::format("keep its centre within {:.6g} … {:.6g} m in {}", lo, hi, "xyz"[k]));
-    }
-    for (std::size_t j = 0; j < i; ++j) {
-      Vec3 apart = x - p.start[j];
-      for (int k = 0; k < d; ++k)
-        if (s.box.sides[k] == SideKind::Periodic)
-          apart[k] = std::remainder(apart[k], s.box.size[k]);
-      if (const double distance = apart.norm(); distance < 2.0 * r * (1.0 - 1e-6))
-        throw InputError(s.file + ": particles.start",
-                         fmt::format("{} and {} overlap by {:.4g} m", place_text(s, p.start[j]),
-                                     place_text(s, x), 2.0 * r - distance),
-                         fmt::format("keep centres a diameter apart, {:.6g} m", 2.0 * r));
-    }
-  }
 }
 
 /// Length of the Reynolds number: the smallest particle, the first disc at rest, or the box.
@@ -313,17 +254,15 @@ Plan make_plan(const Scene& s) {
                  solid ? to_side(s.box.sides[2]) : Side::Periodic};
   plan.units = {dx, 0.0, s.fluid.density, solid ? dx : s.box.depth, s.box.origin};
   plan.reynolds = s.fluid.velocity_scale * reference_length(s) / s.fluid.viscosity;
-  if (s.particles) {
-    check_particles(s);
-    check_starts(s);
-    plan.cells_per_diameter = s.particles->diameter.lo / dx;
-  }
+  check_places(s);
+  if (s.particles) plan.cells_per_diameter = s.particles->diameter.lo / dx;
   if (s.coupling) plan.fluid_steps = s.coupling->fluid_steps;
   choose_step(s, plan);
   fit_to_end(s, plan);
   choose_kernel(s, plan);
   judge_step(s, plan);
   if (s.coupling) choose_substeps(s, plan);
+  check_meaning(s, plan);
   return plan;
 }
 

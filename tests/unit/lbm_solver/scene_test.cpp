@@ -114,6 +114,64 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"not_a_pair", "size = [0.02, 0.06]", "size = [0.02]", {"box.size", "pair"}}),
     [](const auto& info) { return info.param.name; });
 
+/// A part of a scene that a test adds, before its last table.
+std::string with(const std::string& tables) {
+  return tables + "\n[run]";
+}
+const std::string kInlet = "[[boundary]]\nside = \"left\"\nkind = \"velocity\"\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Places, BadScene,
+    testing::Values(Spoiled{"boundaries_in_each_other",
+                            "[run]",
+                            with(kInlet + "velocity = [0.01, 0]\nto = 0.02\n" + kInlet +
+                                 "velocity = [0.02, 0]\nfrom = 0.019"),
+                            {"the 1. and the 2. lie on the same part of a side"}},
+                    Spoiled{"obstacle_outside",
+                            "[run]",
+                            with("[[obstacle]]\ncentre = [0.025, 0.03]\ndiameter = 0.009"),
+                            {"obstacle: [0.025, 0.03]", "0 … 0.02 m in x"}},
+                    Spoiled{
+                        "boundary_too_fast",
+                        "[run]",
+                        with(kInlet + "velocity = [0.13, 0]"),
+                        {"boundary.velocity makes 0.13 m/s, 0.217 of C", "velocity_scale = 0.13"}},
+                    Spoiled{"start_too_fast",
+                            "[run]",
+                            with("[initial]\nkind = \"uniform\"\nvelocity = [0, 0.2]"),
+                            {"initial.velocity makes 0.2 m/s"}},
+                    Spoiled{"spin_too_fast",
+                            "[run]",
+                            with("[[obstacle]]\ncentre = [0.01, 0.02]\ndiameter = 0.01\nspin = 30"),
+                            {"spin makes 0.15 m/s"}}),
+    [](const auto& info) { return info.param.name; });
+
+/// Warnings of the settling disc with one text in place of another.
+std::string warnings(const std::string& from, const std::string& to) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("scene.toml", test::replaced(test::good_scene(), from, to));
+  std::string all;
+  for (const std::string& w : make_plan(read_scene({file})).warnings) all += w + "\n";
+  return all;
+}
+
+TEST(Scene, WhatWouldRunButNotAsItWasMeantIsWarnedOf) {
+  const auto has = [](const std::string& text, const std::string& word) {
+    return text.find(word) != std::string::npos;
+  };
+  EXPECT_EQ(warnings("[run]", with(kInlet + "velocity = [0.01, 0]\n[[boundary]]\nside = \"right\"\n"
+                                            "kind = \"outflow\"")),
+            "");
+  EXPECT_EQ(warnings("[run]", with(kInlet + "velocity = [0, 0.01]")), "") << "along the wall";
+  EXPECT_TRUE(has(warnings("[run]", with(kInlet + "velocity = [0.01, 0]")), "enters"));
+  EXPECT_TRUE(has(warnings("[run]", with(kInlet + "velocity = [-0.01, 0]")), "leaves"));
+  EXPECT_TRUE(has(warnings("[run]", with(kInlet + "velocity = [0.07, 0]")), "velocity_scale"));
+  // The disc weighs 0.0120 N in the fluid: over 100 N/m, 0.0962 of 1.25 mm.
+  EXPECT_TRUE(has(warnings("= 2.0e5", "= 100.0"), "0.0962 of its radius; 1.9e+02 N/m"));
+  EXPECT_EQ(warnings("= 2.0e5", "= 200.0"), "");
+  EXPECT_TRUE(has(warnings("end_time = 1.0", "end_time = 1000.0"), "2e+04 frames, 30.7 GB"));
+}
+
 Scene settling_disc() {
   return read_scene({BPLBM_SOURCE_DIR "/cases/settling_disc/scene.toml"});
 }
