@@ -219,10 +219,7 @@ void choose_substeps(const Scene& s, Plan& plan) {
   const ParticleScene& p = *s.particles;
   double needed = 1.0;
   if (p.contact_stiffness) {
-    const double r = 0.5 * p.diameter.lo;
-    const double volume = s.box.dimension == 2 ? std::numbers::pi * r * r * s.box.depth
-                                               : 4.0 / 3.0 * std::numbers::pi * r * r * r;
-    const double mass = volume * p.density.lo;
+    const double mass = particle_volume(s, p.diameter.lo) * p.density.lo;
     const double contact = std::sqrt(mass / *p.contact_stiffness);
     needed = std::ceil(plan.interval() / (kStepFractionOfContact * contact) - 1e-9);
     plan.substep_limit = fmt::format("contact: step ≤ {} √(m/k) = {:.3g} s", kStepFractionOfContact,
@@ -241,6 +238,12 @@ void choose_substeps(const Scene& s, Plan& plan) {
 }
 
 }  // namespace
+
+double particle_volume(const Scene& s, double diameter) {
+  const double r = 0.5 * diameter;
+  return s.box.dimension == 2 ? std::numbers::pi * r * r * s.box.depth
+                              : 4.0 / 3.0 * std::numbers::pi * r * r * r;
+}
 
 Plan make_plan(const Scene& s) {
   Plan plan;

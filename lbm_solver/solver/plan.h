@@ -38,6 +38,9 @@ struct Plan {
 inline constexpr double kWarnSpeed = 0.1;
 inline constexpr double kStopSpeed = 0.2;
 
+/// Volume of a particle [m^3]; in two dimensions of a disc as thick as the layer.
+double particle_volume(const Scene& scene, double diameter);
+
 /// Chooses what the scene leaves open and refuses what cannot work.
 /// Step rule: C = max(10 velocity_scale, √(3 Δp/(rho 0.03)), 3 nu/dx); the last keeps tau <= 1.5.
 /// Collision "auto": TRT with layered Holdych while Re_h <= 5, central moments with

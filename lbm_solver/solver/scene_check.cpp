@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lbm_solver/base/errors.h"
 
@@ -165,9 +164,7 @@ void check_balance(const Scene& s, Plan& plan) {
 void check_contacts(const Scene& s, Plan& plan) {
   const ParticleScene& p = *s.particles;
   if (!p.contact_stiffness) return;
-  const double r = 0.5 * p.diameter.hi;
-  const double volume = s.box.dimension == 2 ? std::numbers::pi * r * r * s.box.depth
-                                             : 4.0 / 3.0 * std::numbers::pi * r * r * r;
+  const double r = 0.5 * p.diameter.hi, volume = particle_volume(s, p.diameter.hi);
   const double weight =
       std::max(0.0, p.density.hi - s.fluid.density) * volume * s.fluid.gravity.norm();
   // In parts of the radius: of one particle on another, and where one comes with velocity_scale.
