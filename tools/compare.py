@@ -61,7 +61,8 @@ def main():
             runs.append(Run(folder))
         except (OSError, ValueError) as e:
             why = e.strerror if isinstance(e, OSError) else e
-            print(f"compare | error | {folder}/summary.json: {why}; this is no finished run: run the scene first", file=sys.stderr)
+            print(f"compare | error | {folder}/summary.json: {why}; this is no finished run: run the scene first",
+                  file=sys.stderr)
             return 2
     first = rows(runs[0])
     print("| |" + "".join(f" {r.summary['set']} {r.summary['variant']} |" for r in runs))

@@ -30,7 +30,8 @@ def fail(text):
 
 
 def arguments():
-    p = argparse.ArgumentParser(prog="tools/make_packing", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(prog="tools/make_packing", description=__doc__,
+                                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--out", required=True, metavar="NAME", help="files NAME.liggghts and NAME.csv")
     p.add_argument("--box", required=True, nargs=4, type=float, metavar=("X_LO", "X_HI", "Y_LO", "Y_HI"),
                    help="[m]")
