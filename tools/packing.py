@@ -45,6 +45,7 @@ def arguments():
     p.add_argument("--periodic", default="", choices=["", "x", "y", "xy"], help="periodic directions")
     p.add_argument("--overlap", type=float, default=1e-3, help="largest overlap over the smaller radius")
     p.add_argument("--seed", type=int, default=1)
+    p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
     return p.parse_args()
 
 
@@ -187,6 +188,8 @@ def main():
     args = arguments()
     random = np.random.default_rng(args.seed)
     sizes = diameters(args, random)
+    if args.look:
+        return
     margin = 0.5 * sizes
     low = np.array([args.box[0], args.box[2]])
     high = np.array([args.box[1], args.box[3]])

@@ -1,6 +1,6 @@
 """Speed against error of every choice, and which of them survive the hard cases.
 
-    tools/report [--quick|--full] [CASE…]     CASE: array, spheres, cylinder, couette, settling, stability, features
+    tools/report [--quick|--full] [CASE…]     CASE: array, spheres, cylinder, couette, settling, stability, needs
 
 One run is one row: a scene of cases/ with an overlay, judged against a reference. What has been run is kept in
 out/report and not run again (--again does). Writes report.md, rows.csv, rows.json and a picture a case there.
@@ -10,35 +10,22 @@ import argparse
 import csv
 import importlib.util
 import json
-import os
 import pathlib
 import platform
 import re
-import resource
 import subprocess
 import sys
 import time
 
 import matplotlib.pyplot as plt
 import numpy as np
-from launch import CASES, ROOT, environment
+from launch import CASES, ROOT
 from pictures import Run
-from report_cases import (BODIES, CASES_OF, EVERYTHING, FEATURE_SCENES, OPERATORS, OURS, PAPERS, SCHEMES, STAIRS, hard_cases,
-                          merged)
+from report_cases import BODIES, CASES_OF, OPERATORS, OURS, PAPERS, SCHEMES, STAIRS, hard_cases
+from report_needs import needs, text_of_needs
+from report_runs import OUT, merged, progress, run_scene, verdict
 
-OUT = ROOT / "out" / "report"
 SCATTER = 1.2  # of the time of the same run on a shared machine
-
-
-def toml(tables):
-    """Text of an overlay; a list of tables becomes [[name]]."""
-    value = lambda v: json.dumps(v) if not isinstance(v, bool) else str(v).lower()  # noqa: E731
-    text = ""
-    for name, table in tables.items():
-        for one in table if isinstance(table, list) else [table]:
-            text += (f"[[{name}]]\n" if isinstance(table, list) else f"[{name}]\n")
-            text += "".join(f"{k} = {value(v)}\n" for k, v in one.items())
-    return text
 
 
 def module_of(scene):
@@ -46,46 +33,6 @@ def module_of(scene):
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
-
-
-def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0):
-    """Runs a scene with an overlay, unless it has been. Returns exit code, its last error line, peak MB."""
-    folder.mkdir(parents=True, exist_ok=True)
-    text, done = toml(overlay), folder / "row.json"
-    if not again and done.exists():
-        kept = json.loads(done.read_text())
-        if kept["overlay"] == text:
-            return kept["code"], kept["error"], kept["megabytes"]
-    (folder / "overlay.toml").write_text(text)
-    bin_dir = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
-    paths = [str(CASES / scene / f) for f in ("scene.toml", *files)] + [str(folder / "overlay.toml")]
-    line = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", "1", str(bin_dir / "lbm"), *paths, "--out",
-            str(folder), "--progress", "none"]
-    script = CASES / scene / "in.liggghts"
-    if script.exists():
-        line += [":", "-np", "1", str(bin_dir / "liggghts"), "-in", str(script), "-log", "none", "-screen", "none",
-                 "-var", "out_folder", str(folder)]
-    try:
-        job = subprocess.run(line, env=environment(2), capture_output=True, text=True, timeout=limit, check=False)
-        code, output = job.returncode, job.stdout + job.stderr
-    except subprocess.TimeoutExpired:
-        code, output = 124, f"lbm | error | took longer than {limit:.0f} s"
-    errors = re.findall(r"lbm \| error \| (.*)", output)
-    megabytes = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-    error = errors[-1] if errors else ""
-    done.write_text(json.dumps({"overlay": text, "code": code, "error": error, "megabytes": megabytes}))
-    return code, error, megabytes
-
-
-def verdict(code, error):
-    if code == 0:
-        return "bounded"
-    if code == 2:
-        return "refused"
-    found = re.search(r"interval (\d+)", error)
-    if found and found.group(1) == "0":
-        return "refused"  # the initial state is faster than 0.2 C already
-    return f"blown up at step {found.group(1)}" if code == 3 and found else f"failed ({code})"
 
 
 def stability(full, again):
@@ -104,47 +51,7 @@ def stability(full, again):
     return rows
 
 
-# ---- only what a scene needs -------------------------------------------------------------------------------------
-
-def features(again):
-    """Each scene as it is, and with a turbulence model, a body force, lubrication and a virtual mass that it does
-    not need, which change nothing that could be seen: what leaving them out saves."""
-    rows = []
-    for scene, short in FEATURE_SCENES.items():
-        coupled = (CASES / scene / "in.liggghts").exists()
-        on = merged(short, EVERYTHING, {"coupling": {"lubrication_range": 1e-6, "virtual_mass": 1e-9}} if coupled else {})
-        seconds, share, code = {}, {}, 0
-        for name, overlay in (("as it is", short), ("everything on", on)):
-            folder = OUT / "features" / f"{scene}-{name.replace(' ', '_')}"
-            code = code or run_scene(folder, scene, overlay, (), again)[0]
-            if not code:
-                summary = Run(folder).summary
-                seconds[name], share[name] = summary["cpu_seconds"], summary["time_share"]
-        check = subprocess.run([str(ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin" / "lbm"), "check",
-                                str(CASES / scene / "scene.toml")], capture_output=True, text=True, check=False).stdout
-        line = lambda key: (re.search(rf"^{key} +(.*)$", check, re.M) or ["", ""])[1]  # noqa: E731, B023
-        rows.append({"scene": scene, "on": line("on"), "off": line("off"), "memory": line("cost").split(";")[0], "code": code,
-                     "cpu_seconds": seconds, "time_share": share.get("as it is", {})})
-        progress("features", f"{scene}: {seconds}")
-    return rows
-
-
-def text_of_features(rows):
-    lines = ["## Only what a scene needs", "", "| scene | on | off | memory | share of the time | CPU s | with everything on |",
-             "|---|---|---|---|---|---|---|"]
-    for r in rows:
-        share = ", ".join(f"{part} {100 * s:.0f} %" for part, s in r["time_share"].items() if s > 0.005)
-        c = r["cpu_seconds"]
-        both = f"{c['as it is']:.3g} | {c['everything on']:.3g} ({c['everything on'] / c['as it is']:.2f} ×)" if len(c) == 2 else "– | –"
-        lines.append(f"| {r['scene']} | {r['on']} | {r['off']} | {r['memory']} | {share} | {both} |")
-    return lines + [""]
-
-
 # ---- tables and pictures -----------------------------------------------------------------------------------------
-
-
-def progress(case, text):
-    print(f"report | {case} | {text}", flush=True)
 
 
 def measure(case, full, again):
@@ -316,22 +223,25 @@ def text_of_stability(rows):
 
 
 def main():
-    names = [*CASES_OF, "stability", "features"]
+    names = [*CASES_OF, "stability", "needs"]
     p = argparse.ArgumentParser(prog="tools/report", description=__doc__.splitlines()[0])
     p.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(names)}; default: all")
     p.add_argument("--quick", action="store_true", help="under ten minutes (default)")
     p.add_argument("--full", action="store_true", help="more cells, steps and cases; under ninety minutes")
     p.add_argument("--list", action="store_true", help="the cases, and nothing else")
+    p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
     p.add_argument("--again", action="store_true", help="run also what has been run before")
     args = p.parse_args()
     if args.list:
         print("\n".join([f"{name:10} {case[5]}" for name, case in CASES_OF.items()]
-                        + ["stability  hard cases, each with every operator and scheme", "features   each scene against everything on"]))
+                        + ["stability  hard cases, each with every operator and scheme", "needs      each scene against everything on, and its profile"]))
         return 0
     unknown = [c for c in args.cases if c not in names]
     if unknown:
         print(f"report | error | no case '{unknown[0]}'; there are: {', '.join(names)}", file=sys.stderr)
         return 2
+    if args.look:
+        return 0
     OUT.mkdir(parents=True, exist_ok=True)
     start, text, everything = time.monotonic(), [], []
     for case in args.cases or names:
@@ -341,8 +251,10 @@ def main():
             text += text_of_stability(rows)
             (OUT / "stability.json").write_text(json.dumps(rows, indent=1) + "\n")
             continue
-        if case == "features":
-            text += text_of_features(features(args.again))
+        if case == "needs":
+            rows = needs(args.again)
+            text += text_of_needs(rows)
+            (OUT / "needs.json").write_text(json.dumps(rows, indent=1) + "\n")
             continue
         rows = measure(case, args.full, args.again)
         draw(case, rows)

@@ -1,8 +1,9 @@
-"""What tools/report runs: schemes, the cases with a reference and how to measure them, the hard cases, and the scenes
-whose features are switched on and off."""
+"""What tools/report runs: schemes, the cases with a reference and how to measure them, the hard cases, and where
+long scenes end early."""
 
 import numpy as np
 from pictures import read_table
+from report_runs import merged
 
 OURS, PAPERS, STAIRS = "ours", "papers", "staircase"
 SCHEMES = {
@@ -21,15 +22,15 @@ SCHEMES = {
 }
 
 
-def merged(*overlays):
-    out = {}
-    for overlay in overlays:
-        for name, table in overlay.items():
-            out[name] = table if isinstance(table, list) else {**out.get(name, {}), **table}
-    return out
-
-
 # ---- cases: name -> rows (label, family, overlays of places, files), and how to measure ----------------------------
+
+
+PLACES = ((0, 0), (0.5, 0.5), (0.23, 0.41))  # of a body's centre within a cell
+
+
+def step_of(tau, h):
+    """Time step [s] of a relaxation time in water, whose viscosity is 1e-6 m²/s."""
+    return (tau - 0.5) / 3 * h * h / 1e-6
 
 
 def array_rows(full):
@@ -39,11 +40,10 @@ def array_rows(full):
             for tau in (0.505, 0.6, 1.0, 1.5) if full else (0.6, 1.5):
                 if tau < 0.6 and h < 2e-5:
                     continue
-                step = (tau - 0.5) / 3 * h * h / 1e-6
                 places = [{"obstacle": [{"centre": [0.0005 + x * h, 0.0005 + y * h], "diameter": 5.046265044e-4}],
-                           "numerics": {**numerics, "cell": h, "time_step": step},
+                           "numerics": {**numerics, "cell": h, "time_step": step_of(tau, h)},
                            "run": {"end_time": 8.0}, "output": {"fields_every": 8.0, "probe_every": 0.1}}
-                          for x, y in ((0, 0), (0.5, 0.5), (0.23, 0.41))]
+                          for x, y in PLACES]
                 yield label, family, f"D/h {5.046e-4 / h:.0f}, τ {tau}", places, ()
 
 
@@ -73,7 +73,7 @@ def sphere_rows(full):
                     continue
                 h = 1e-3 / n
                 places = [{"obstacle": [{"centre": [5e-4 + x * h, 5e-4 + y * h, 5e-4 + z * h], "diameter": 6.2035049e-4}],
-                           "numerics": {**numerics, "cell": h, "time_step": (tau - 0.5) / 3 * h * h / 1e-6},
+                           "numerics": {**numerics, "cell": h, "time_step": step_of(tau, h)},
                            "run": {"end_time": 1.0}, "output": {"fields_every": 1.0, "probe_every": 0.1}}
                           for x, y, z in ((0, 0, 0), (0.5, 0.5, 0.5), (0.23, 0.41, 0.12))]
                 yield label, family, f"D/h {0.62035 * n:.0f}, τ {tau}", places, ()
@@ -88,11 +88,19 @@ def cylinder_rows(full):
 
 
 def couette_rows(full):
+    """The longest step of the rule (τ = 1.5) and shorter ones, which bounce-back pays for the most."""
     for label, (family, numerics) in SCHEMES.items():
         if "bodies at rest" in label or "implicit" in label or (label.startswith("BGK") and not family):
             continue
         for h in (2e-4, 1e-4) + ((5e-5,) if full else ()):
-            yield label, family, f"gap/h {1.6e-3 / h:.0f}", [{"numerics": {**numerics, "cell": h}}], ()
+            for tau in (0.6, 0.8, 1.5) if full else (0.8, 1.5):
+                if "bounce_back" in numerics.get("scheme", "") and tau < 1.0 and h < (1.5e-4 if not full or tau < 0.8 else 9e-5):
+                    continue
+                centres = [[0.0038 + x * h, 0.0038 + y * h] for x, y in PLACES]
+                places = [{"obstacle": [{"centre": c, "diameter": 0.0064, "hollow": True},
+                                        {"centre": c, "diameter": 0.0032, "spin": 1.0}],
+                           "numerics": {**numerics, "cell": h, "time_step": step_of(tau, h)}} for c in centres]
+                yield label, family, f"gap/h {1.6e-3 / h:.0f}, τ {tau}", places, ()
 
 
 def settling_rows(full):
@@ -165,9 +173,9 @@ def hard_cases(full):
         yield "cavity Re 10 000", "lid_driven_cavity", ("variant-re10000.toml",), {"run": {"end_time": 100.0}}, False
 
 
-# ---- only what a scene needs ----------------------------------------------------------------------------------------
+# ---- only what a scene needs: where a long scene ends early [s] ------------------------------------------------------
 
-EVERYTHING = {"numerics": {"smagorinsky": 1e-3}, "fluid": {"body_force": [1e-12, 0.0]}}
-FEATURE_SCENES = {"taylor_green": {}, "cylinder_flow": {"run": {"end_time": 8.0}}, "lid_driven_cavity": {"run": {"end_time": 20.0}},
-                  "settling_disc": {}, "couette_disc": {"run": {"end_time": 20.0}}, "disc_migration": {},
-                  "drafting_kissing_tumbling": {}, "suspension_migration": {"run": {"end_time": 0.05}}}
+BEGINNINGS = {"couette_disc": 30.0, "cylinder_flow": 4.0, "disc_migration": 0.835, "drafting_kissing_tumbling": 0.5,
+              "hydraulic_fracture": 0.001, "lid_driven_cavity": 8.0, "lid_driven_cavity_3d": 0.5, "sedimentation": 0.04,
+              "settling_disc": 0.5, "soil_erosion": 0.005, "soil_erosion_3d": 0.01, "suspension_migration": 0.0104175,
+              "ten_cate_sphere": 0.6}

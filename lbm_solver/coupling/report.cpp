@@ -170,6 +170,8 @@ std::string describe_cost(const Scene& s, const Plan& p) {
                         0.5 * s.particles->diameter.hi / p.units.dx});
   }
   const double step = measure_step(fluid, bodies);
+  double bytes = 0.0;
+  for (const auto& [part, size] : fluid.bytes()) bytes += size;
   const double cells = static_cast<double>(p.domain.nx) * p.domain.ny * p.domain.nz;
   const double total = step * static_cast<double>(p.intervals) * p.fluid_steps;
   return fmt::format(
@@ -177,7 +179,7 @@ std::string describe_cost(const Scene& s, const Plan& p) {
       "cost         {:.3g} MB; {:.3g} s of fluid at the {:.0f} million updates/s just measured, "
       "one "
       "thread{}\n",
-      on, off, static_cast<double>(fluid.bytes()) * 1e-6, total, cells / step * 1e-6,
+      on, off, bytes * 1e-6, total, cells / step * 1e-6,
       s.coupling ? "; the solid's time comes on top" : "");
 }
 

@@ -22,9 +22,9 @@ std::int64_t last_interval(const Plan& plan, const RunOptions& options) {
   return std::min(plan.intervals, std::max<std::int64_t>(1, static_cast<std::int64_t>(intervals)));
 }
 
-/// The summary of a run that has ended.
-Summary summarise(const Scene& scene, const RunOptions& options, const Observers& observers,
-                  const PartClock& clock, const std::string& ending) {
+/// The summary of a run that has ended. Collective.
+Summary summarise(const Scene& scene, const RunOptions& options, const Fluid& fluid,
+                  const Observers& observers, const PartClock& clock, const std::string& ending) {
   Summary summary = observers.summary(clock.total());
   summary.scene = scene.title;
   summary.set = options.set;
@@ -34,6 +34,7 @@ Summary summarise(const Scene& scene, const RunOptions& options, const Observers
   summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   for (const auto& [part, seconds] : clock.parts())
     summary.time_share[part] = seconds / clock.total();
+  for (const auto& [part, bytes] : fluid.bytes()) summary.megabytes[part] = 1e-6 * bytes;
   return summary;
 }
 
@@ -140,7 +141,7 @@ class CoupledRun {
       throw;
     }
     clock_.charge("output");
-    Summary summary = summarise(scene_, options_, observers_, clock_, ending_);
+    Summary summary = summarise(scene_, options_, fluid_, observers_, clock_, ending_);
     summary.versions[partner_.program] = partner_.program_version;
     summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
     summary.waiting = clock_.parts().at("waiting");
@@ -312,7 +313,7 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
   }
   observers.at_end(step, fluid, nullptr);
   clock.charge("output");
-  const Summary summary = summarise(scene, options, observers, clock, ending);
+  const Summary summary = summarise(scene, options, fluid, observers, clock, ending);
   if (ranks.rank() == 0) write_summary(options.out, summary);
   return summary;
 }

@@ -24,6 +24,7 @@ void write_summary(const std::string& folder, const Summary& s) {
       {"cpu_seconds", s.cpu_seconds},
       {"mlups", s.mlups},
       {"time_share", s.time_share},
+      {"megabytes", s.megabytes},
       {"waiting", s.waiting},
       {"ma_max", s.ma_max},
       {"ma_paper", s.ma_paper},

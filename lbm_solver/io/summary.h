@@ -18,6 +18,7 @@ struct Summary {
   double physical_seconds = 0.0, wall_seconds = 0.0, cpu_seconds = 0.0;
   double mlups = 0.0;  ///< million lattice updates a second of wall time, everything included
   std::map<std::string, double> time_share;  ///< part -> fraction of the wall time
+  std::map<std::string, double> megabytes;   ///< part of the fluid's memory -> its size
   double waiting = 0.0;                      ///< seconds spent waiting for the solid
   double ma_max = 0.0;                       ///< max |u| / c_s
   double ma_paper = 0.0;                     ///< max |u| / C

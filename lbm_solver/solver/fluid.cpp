@@ -207,6 +207,15 @@ Fluid::Extremes Fluid::extremes() {
   return e;
 }
 
+std::map<std::string, double> Fluid::bytes() const {
+  double parts[] = {static_cast<double>(f_.bytes()),
+                    cover_ ? static_cast<double>(cover_->bytes()) : 0.0};
+  ranks_->sum(parts);
+  std::map<std::string, double> bytes{{"populations", parts[0]}};
+  if (cover_) bytes["solids"] = parts[1];
+  return bytes;
+}
+
 namespace {
 
 /// Calls f(number, cell) for every cell of a block, in the order of Decomposition::gather.

@@ -106,7 +106,9 @@ class Fluid {
   std::map<std::string, std::vector<double>> state() const;
   void restore(const std::map<std::string, std::vector<double>>& state);
 
-  std::size_t bytes() const { return f_.bytes() + (cover_ ? cover_->bytes() : 0); }
+  /// Bytes that its parts take on all ranks: "populations" and, where covered cells are, "solids".
+  /// Collective.
+  std::map<std::string, double> bytes() const;
 
  private:
   void sweep_and_exchange(EsotericPull& stream);

@@ -151,6 +151,7 @@ void FixLbmCouple::begin() {
   // The first interval is serial in either schedule, unless a checkpoint has the loads to begin
   // with.
   if (!overlapped_ || interval_ == 0) take_loads(false);
+  waited_before_ = coupling.session->waited();
 }
 
 /// A later run goes on where the one before ended, with the loads held there. What the script did
@@ -235,8 +236,11 @@ void FixLbmCouple::send_states() {
   coupling.over = stop_asked_;
   underway_ = !stop_asked_;
   if (coupling.over && comm->me == 0 && logfile)
-    fmt::print(logfile, "fix lbm/couple: {} intervals, {:.3g} s of waiting for the fluid\n",
-               interval_ - coupling.session->fluid().first_interval, coupling.session->waited());
+    fmt::print(logfile,
+               "fix lbm/couple: {} intervals, {:.6g} s of waiting for the fluid, {:.6g} s of it "
+               "before the first step\n",
+               interval_ - coupling.session->fluid().first_interval, coupling.session->waited(),
+               waited_before_);
 }
 
 protocol::SolidSession::Reply FixLbmCouple::collect() {

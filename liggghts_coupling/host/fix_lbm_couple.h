@@ -70,6 +70,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   double** held_ = nullptr;  ///< [nmax][6] force [N] and torque [N m] of the current interval
   LAMMPS_NS::bigint first_step_ = 0, step_ = 0;  ///< of the first run; the one that ended last
   double time_step_ = 0.0;                       ///< [s], of all runs
+  double waited_before_ = 0.0;                   ///< [s], until the first step
   std::int64_t interval_ = 0;
   bool stop_asked_ = false, checkpoint_asked_ = false;
   bool overlapped_ = false;  ///< loads are taken at the end of their interval

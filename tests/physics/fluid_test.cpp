@@ -133,4 +133,20 @@ TEST(Extremes, FindsThePlaceOfAValueThatIsNotFinite) {
   EXPECT_EQ(e.cell[1], 9);
 }
 
+TEST(Memory, IsTakenForSolidsOnlyWhereTheyCanBe) {
+  const Domain box{64, 48, Side::Wall, Side::Wall};
+  KernelChoice with_solids = choice("trt", 0.9);
+  with_solids.solid_term = "holdych";
+  const Fluid pure(box, choice("trt", 0.9));
+  Fluid covered(box, with_solids);
+  const double cells = 64.0 * 48.0 * 9.0 * sizeof(double);
+  EXPECT_FALSE(pure.bytes().contains("solids"));
+  EXPECT_GE(pure.bytes().at("populations"), cells);
+  EXPECT_LT(pure.bytes().at("populations"), 2.0 * cells);
+  const double empty = covered.bytes().at("solids");
+  covered.place(std::vector<Body>{{1, {30.0, 20.0, 0.0}, 6.0}});
+  EXPECT_GT(covered.bytes().at("solids"), empty);
+  EXPECT_EQ(covered.bytes().at("populations"), pure.bytes().at("populations"));
+}
+
 }  // namespace

@@ -7,6 +7,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 import report  # noqa: E402
+import report_needs  # noqa: E402
 from report_cases import OURS, PAPERS  # noqa: E402
 
 
@@ -37,6 +38,23 @@ class Advantage(unittest.TestCase):
         rows = [row("default", 1.0, 1.0), row("papers", 4.0, 2.0, family=PAPERS), row("papers", 0.5, 8.0, family=PAPERS)]
         cost, error = report.advantage(rows, PAPERS)
         self.assertEqual((cost, error), ([0.5, 4.0], [0.0, 2.0]))
+
+
+class Needs(unittest.TestCase):
+    def test_only_what_is_off_is_switched_on(self):
+        self.assertEqual(report_needs.everything_on("taylor_green"),
+                         {"numerics": {"smagorinsky": 1e-3}, "fluid": {"body_force": [1e-12, 0.0]}})
+        self.assertEqual(report_needs.everything_on("suspension_migration"),
+                         {"coupling": {"lubrication_range": 1e-9, "virtual_mass": 1e-9}})
+        self.assertEqual(len(report_needs.everything_on("ten_cate_sphere")["fluid"]["body_force"]), 3)
+
+    def test_solid_parts_are_of_the_last_run_and_without_the_wait(self):
+        table = "Loop time of {0} on 1 procs\n" + "".join(
+            f"{key} time (%) = {{{i}}} (1.0)\n" for i, key in enumerate(("Pair", "Neigh", "Comm", "Outpt", "Other"), 1))
+        log = table.format(9, 9, 9, 9, 9, 9) + "fix lbm/couple: 4 intervals, 3.5 s of waiting for the fluid, " \
+            "0.5 s of it before the first step\n" + table.format(6, 1, 0.5, 0.25, 0.25, 4)
+        self.assertEqual(report_needs.solid_parts(log, 4), {"contacts": 250000.0, "neighbours": 125000.0, "ranks": 62500.0,
+                                                            "output": 62500.0, "other": 250000.0, "waiting": 750000.0})
 
 
 if __name__ == "__main__":

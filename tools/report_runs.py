@@ -1,0 +1,77 @@
+"""One run of tools/report: a scene with an overlay, kept in out/report and not run again."""
+
+import json
+import os
+import re
+import resource
+import subprocess
+
+from launch import CASES, ROOT, environment
+
+OUT = ROOT / "out" / "report"
+BIN = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
+
+
+def progress(case, text):
+    print(f"report | {case} | {text}", flush=True)
+
+
+def merged(*overlays):
+    out = {}
+    for overlay in overlays:
+        for name, table in overlay.items():
+            out[name] = table if isinstance(table, list) else {**out.get(name, {}), **table}
+    return out
+
+
+def toml(tables):
+    """Text of an overlay; a list of tables becomes [[name]]."""
+    value = lambda v: json.dumps(v) if not isinstance(v, bool) else str(v).lower()  # noqa: E731
+    text = ""
+    for name, table in tables.items():
+        for one in table if isinstance(table, list) else [table]:
+            text += (f"[[{name}]]\n" if isinstance(table, list) else f"[{name}]\n")
+            text += "".join(f"{k} = {value(v)}\n" for k, v in one.items())
+    return text
+
+
+def is_coupled(scene):
+    return (CASES / scene / "in.liggghts").exists()
+
+
+def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0):
+    """Runs a scene with an overlay, unless it has been. Returns exit code, its last error line, peak MB."""
+    folder.mkdir(parents=True, exist_ok=True)
+    text, done = toml(overlay), folder / "row.json"
+    if not again and done.exists():
+        kept = json.loads(done.read_text())
+        if kept["overlay"] == text:
+            return kept["code"], kept["error"], kept["megabytes"]
+    (folder / "overlay.toml").write_text(text)
+    paths = [str(CASES / scene / f) for f in ("scene.toml", *files)] + [str(folder / "overlay.toml")]
+    line = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", "1", str(BIN / "lbm"), *paths, "--out", str(folder),
+            "--progress", "none"]
+    if is_coupled(scene):
+        line += [":", "-np", "1", str(BIN / "liggghts"), "-in", str(CASES / scene / "in.liggghts"), "-log",
+                 str(folder / "liggghts.log"), "-screen", "none", "-var", "out_folder", str(folder)]
+    try:
+        job = subprocess.run(line, env=environment(2), capture_output=True, text=True, timeout=limit, check=False)
+        code, output = job.returncode, job.stdout + job.stderr
+    except subprocess.TimeoutExpired:
+        code, output = 124, f"lbm | error | took longer than {limit:.0f} s"
+    errors = re.findall(r"lbm \| error \| (.*)", output)
+    megabytes = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    error = errors[-1] if errors else ""
+    done.write_text(json.dumps({"overlay": text, "code": code, "error": error, "megabytes": megabytes}))
+    return code, error, megabytes
+
+
+def verdict(code, error):
+    if code == 0:
+        return "bounded"
+    if code == 2:
+        return "refused"
+    found = re.search(r"interval (\d+)", error)
+    if found and found.group(1) == "0":
+        return "refused"  # the initial state is faster than 0.2 C already
+    return f"blown up at step {found.group(1)}" if code == 3 and found else f"failed ({code})"
