@@ -8,7 +8,6 @@ out/report and not run again (--again does). Writes report.md, rows.csv, rows.js
 
 import argparse
 import csv
-import importlib.util
 import json
 import pathlib
 import platform
@@ -19,36 +18,14 @@ import time
 
 import matplotlib.pyplot as plt
 import numpy as np
-from launch import CASES, ROOT
+from launch import ROOT
 from pictures import Run
-from report_cases import BODIES, CASES_OF, OPERATORS, OURS, PAPERS, SCHEMES, STAIRS, hard_cases
+from report_cases import CASES_OF, OURS, PAPERS, SCHEMES, STAIRS
+from report_hard import draw_stability, stability, text_of_stability
 from report_needs import needs, text_of_needs
-from report_runs import OUT, merged, progress, run_scene, verdict
+from report_runs import OUT, module_of, progress, run_scene, verdict
 
 SCATTER = 1.2  # of the time of the same run on a shared machine
-
-
-def module_of(scene):
-    spec = importlib.util.spec_from_file_location(f"plot_{scene}", CASES / scene / "plot.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def stability(full, again):
-    """Rows of the matrix: case, choice, verdict."""
-    rows = []
-    for name, scene, files, overlay, body in hard_cases(full):
-        choices = [(op, {"numerics": {"collision": op}}) for op in OPERATORS]
-        if body:
-            choices += [(f"{term} with auto", {"numerics": {"collision": "auto", "solid_term": "auto", **n}})
-                        for term, n in BODIES.items() if term != "auto"]
-        for choice, change in choices:
-            folder = OUT / "stability" / re.sub(r"[^\w.]+", "_", f"{name}-{choice}")
-            code, error, _ = run_scene(folder, scene, merged(overlay, change), files, again, 300.0)
-            rows.append({"case": name, "choice": choice, "verdict": verdict(code, error), "reason": error})
-            progress("stability", f"{name} | {choice}: {rows[-1]['verdict']}")
-    return rows
 
 
 # ---- tables and pictures -----------------------------------------------------------------------------------------
@@ -166,28 +143,6 @@ def draw(case, rows):
     plt.close(figure)
 
 
-def draw_stability(rows):
-    cases = list(dict.fromkeys(r["case"] for r in rows))
-    choices = list(dict.fromkeys(r["choice"] for r in rows))
-    table = {(r["case"], r["choice"]): r["verdict"] for r in rows}
-    color = {"bounded": "#7fbf7f", "refused": "#f0d060", "": "white"}
-    figure, axes = plt.subplots(figsize=(0.75 * len(choices) + 3.0, 0.36 * len(cases) + 1.6))
-    for j, case in enumerate(cases):
-        for i, choice in enumerate(choices):
-            v = table.get((case, choice), "")
-            axes.add_patch(plt.Rectangle((i, j), 1, 1, facecolor=color.get(v, "#e07070"), edgecolor="white"))
-            if v.startswith("blown"):
-                axes.text(i + 0.5, j + 0.5, v.split()[-1], ha="center", va="center", fontsize=6)
-    axes.set_xlim(0, len(choices))
-    axes.set_ylim(len(cases), 0)
-    axes.set_xticks(np.arange(len(choices)) + 0.5, choices, rotation=40, ha="right", fontsize=7)
-    axes.set_yticks(np.arange(len(cases)) + 0.5, cases, fontsize=7)
-    axes.grid(False)
-    axes.set_title("green bounded · yellow refused · red blown up, at step", fontsize=8)
-    figure.savefig(OUT / "stability.png", bbox_inches="tight")
-    plt.close(figure)
-
-
 def machine():
     name = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
     commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
@@ -215,11 +170,6 @@ def text_of(case, rows):
                      f"{r['seconds']:.3g} | {r['steps']} | {r['re_h']:.3g} | {r['ma_max']:.3g}" if ok else "– | – | – | – | – | –")
                      + f" | {r['status']} |")
     return lines + [""]
-
-
-def text_of_stability(rows):
-    lines = ["## Stability on hard cases", "", "![stability](stability.png)", "", "| case | choice | verdict |", "|---|---|---|"]
-    return lines + [f"| {r['case']} | {r['choice']} | {r['verdict']} |" for r in rows] + [""]
 
 
 def main():

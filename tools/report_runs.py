@@ -1,5 +1,6 @@
 """One run of tools/report: a scene with an overlay, kept in out/report and not run again."""
 
+import importlib.util
 import json
 import os
 import re
@@ -10,6 +11,9 @@ from launch import CASES, ROOT, environment
 
 OUT = ROOT / "out" / "report"
 BIN = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
+
+
+ENVIRONMENT = {**environment(2), "OMPI_MCA_pml": "ob1"}  # one machine: no search for networks, 0.2 s less of each start
 
 
 def progress(case, text):
@@ -35,6 +39,14 @@ def toml(tables):
     return text
 
 
+def module_of(scene):
+    """The scene's plot.py, which knows how to measure its runs."""
+    spec = importlib.util.spec_from_file_location(f"plot_{scene}", CASES / scene / "plot.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 def is_coupled(scene):
     return (CASES / scene / "in.liggghts").exists()
 
@@ -55,7 +67,7 @@ def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0):
         line += [":", "-np", "1", str(BIN / "liggghts"), "-in", str(CASES / scene / "in.liggghts"), "-log",
                  str(folder / "liggghts.log"), "-screen", "none", "-var", "out_folder", str(folder)]
     try:
-        job = subprocess.run(line, env=environment(2), capture_output=True, text=True, timeout=limit, check=False)
+        job = subprocess.run(line, env=ENVIRONMENT, capture_output=True, text=True, timeout=limit, check=False)
         code, output = job.returncode, job.stdout + job.stderr
     except subprocess.TimeoutExpired:
         code, output = 124, f"lbm | error | took longer than {limit:.0f} s"

@@ -6,7 +6,9 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
+import numpy as np  # noqa: E402
 import report  # noqa: E402
+import report_hard  # noqa: E402
 import report_needs  # noqa: E402
 from report_cases import OURS, PAPERS  # noqa: E402
 
@@ -38,6 +40,47 @@ class Advantage(unittest.TestCase):
         rows = [row("default", 1.0, 1.0), row("papers", 4.0, 2.0, family=PAPERS), row("papers", 0.5, 8.0, family=PAPERS)]
         cost, error = report.advantage(rows, PAPERS)
         self.assertEqual((cost, error), ([0.5, 4.0], [0.0, 2.0]))
+
+
+class FakeRun:
+    """What a judge asks of a run, without one: columns of a particle's probes and parameters."""
+
+    def __init__(self, columns, **parameters):
+        self.columns, self.parameters, self.summary = columns, parameters, parameters
+
+    def probes(self, particle=1):
+        return self.columns[particle - 1]
+
+
+class HardCases(unittest.TestCase):
+    def test_noise_is_the_change_a_step(self):
+        time = np.arange(2000.0)
+        disc = {"particle_density": 4.0 / np.pi, "diameter": 1.0, "depth": 1.0, "gravity_y": -1.0}  # weighs 1
+        for height, met in ((0.02, True), (0.03, False)):
+            force = 3.0 + 1e-6 * time + height * (-1.0) ** time
+            run = FakeRun([{"time": time, "fy": force}], **disc)
+            for judge in (report_hard.noise(0, 2000), report_hard.jump(0, 2000)):
+                self.assertEqual(judge([run]), (met, f"{200 * height:.2g} %"))
+
+    def test_a_way_is_the_same_half_a_period_on(self):
+        one = {"x": np.array([0.7, 0.9, 1.0]), "y": np.array([0.5, 0.5, 0.5])}
+        for error, met in ((0.0, True), (1e-9, False)):
+            other = {"x": np.array([0.2, 0.4, 0.5 + error]), "y": one["y"]}
+            runs = [FakeRun([columns], box_x=1.0, diameter=1.0) for columns in (one, other)]
+            self.assertEqual(report_hard.crossing(runs)[0], met)
+
+    def test_numbers_of_discs_play_no_part(self):
+        a, b = ({"x": np.array([x]), "y": np.array([2.0])} for x in (1.0, 3.0))
+        first = FakeRun([a, b], diameter=1.0)
+        self.assertTrue(report_hard.order([first, FakeRun([b, a], diameter=1.0)])[0])
+        self.assertFalse(report_hard.order([first, FakeRun([a, b], diameter=1.0)])[0])
+
+    def test_each_row_of_the_table_has_the_default_apart(self):
+        rows = [{"case": "c", "asked": "a", "operator": op, "solids": report_hard.RULE, "verdict": verdict, "met": met, "value": value}
+                for op, verdict, met, value in (("auto", "bounded", True, "3 %"), ("trt", "bounded", False, "9 %"),
+                                                ("bgk", "blown up at step 7", None, ""))]
+        self.assertIn("| c | a | met, 3 % | – | trt, by rule (9 %) | – | bgk, by rule (7) |",
+                      report_hard.text_of_stability(rows))
 
 
 class Needs(unittest.TestCase):
