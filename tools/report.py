@@ -34,12 +34,12 @@ SCATTER = 1.2  # of the time of the same run on a shared machine
 def measure(case, full, again):
     """One row a configuration, from one run or several places of the body."""
     scene, make_rows, value_of, reference, uncertainty, source = CASES_OF[case]
-    module, rows = module_of(scene), []
+    module, rows, built = module_of(scene), [], machine()
     for label, family, size, places, files in make_rows(full):
-        values, cpu, wall, steps, status, memory, summary = [], [], [], 0, "ok", 0.0, None
+        values, cpu, wall, steps, status, summary = [], [], [], 0, "ok", None
         for i, overlay in enumerate(places):
             folder = OUT / case / re.sub(r"[^\w.]+", "_", f"{label}-{size}-{i}")
-            code, error, memory = run_scene(folder, scene, overlay, files, again)
+            code, error = run_scene(folder, scene, overlay, files, again)
             if code:
                 status = verdict(code, error)
                 break
@@ -57,10 +57,10 @@ def measure(case, full, again):
                "spread_percent": float(np.ptp(errors)) if status == "ok" else None,
                "reference": reference, "reference_uncertainty_percent": 100 * uncertainty, "source": source,
                "cpu_seconds": float(np.mean(cpu)) if cpu else None, "seconds": float(np.mean(wall)) if wall else None,
-               "steps": steps, "peak_megabytes": memory}
+               "steps": steps, "numerics": {"precision": "double", **places[0].get("numerics", {})}, "built": built}
         if summary:
-            row.update({key: summary[key] for key in ("mlups", "ma_max", "re_h", "mass_drift", "substeps")},
-                       tau=summary["parameters"]["tau"], time_share=summary["time_share"], precision="double")
+            row.update({key: summary[key] for key in ("mlups", "ma_max", "re_h", "mass_drift", "substeps", "time_share")},
+                       tau=summary["parameters"]["tau"], megabytes=sum(summary["megabytes"].values()))
         rows.append(row)
         text = f"{row['error_percent']:+.2f} % (spread {row['spread_percent']:.2f}), {row['seconds']:.3g} s" \
             if status == "ok" else status
@@ -110,6 +110,15 @@ def said(factors, better, none):
     return f"{text} times {better}" + ("" if len(good) == len(factors) else f" (in {len(good)} of {len(factors)} points)")
 
 
+def draw_unstable(axes, rows, colors):
+    """Hollow marks along the top, for runs without an error or a time."""
+    for i, r in enumerate(rows):
+        axes.plot(0.16 + 0.022 * i, 0.97, "o", transform=axes.transAxes, mfc="none", markersize=5, color=colors[r["scheme"]])
+    if rows:
+        axes.set_ylim(top=3 * axes.get_ylim()[1])  # room for them
+        axes.text(0.01, 0.97, "came to no end:", transform=axes.transAxes, va="center", fontsize=7)
+
+
 def draw(case, rows):
     figure, axes = plt.subplots(figsize=(7.6, 4.6))
     labels = list(dict.fromkeys([*(s for s in SCHEMES if any(r["scheme"] == s for r in rows)),
@@ -124,9 +133,6 @@ def draw(case, rows):
             axes.errorbar(x, y, yerr=[np.minimum([r["spread_percent"] / 2 for r in good], 0.9 * np.array(y)),
                                       [r["spread_percent"] / 2 for r in good]], fmt="o" if "default" in label else "s",
                           markersize=5 if "default" in label else 3.5, color=colors[label], elinewidth=0.6, label=label)
-        for r in mine:
-            if r["status"] != "ok":
-                axes.plot(r["seconds"] or axes.get_xlim()[0], 100, "o", mfc="none", color=colors[label])
     kept = front(rows)
     axes.step([r["seconds"] for r in kept], [doubt(r) for r in kept], where="post", color="0.3", linewidth=0.8, zorder=0,
               label="front (error and half of the spread)")
@@ -135,6 +141,7 @@ def draw(case, rows):
         axes.axhspan(1e-2, uncertainty, color="0.9", zorder=-1)
     axes.set_xscale("log")
     axes.set_yscale("log")
+    draw_unstable(axes, [r for r in rows if r["status"] != "ok"], colors)
     axes.set_xlabel("seconds of the fluid to the solution, one core")
     axes.set_ylabel("|error| [%]")
     axes.set_title(CASES_OF[case][5], fontsize=9)
@@ -213,7 +220,7 @@ def main():
     (OUT / "report.md").write_text("\n".join([f"# Speed against error\n\n{machine()}\n", *text]) + "\n")
     if everything:
         (OUT / "rows.json").write_text(json.dumps(everything, indent=1) + "\n")
-        columns = [k for k in everything[0] if k != "time_share"]
+        columns = list(dict.fromkeys(key for row in everything for key in row if key != "time_share"))
         with open(OUT / "rows.csv", "w", newline="") as f:
             writer = csv.DictWriter(f, columns, extrasaction="ignore")
             writer.writeheader()

@@ -4,7 +4,6 @@ import importlib.util
 import json
 import os
 import re
-import resource
 import subprocess
 
 from launch import CASES, ROOT, environment
@@ -52,13 +51,13 @@ def is_coupled(scene):
 
 
 def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0):
-    """Runs a scene with an overlay, unless it has been. Returns exit code, its last error line, peak MB."""
+    """Runs a scene with an overlay, unless it has been. Returns exit code and the last error line."""
     folder.mkdir(parents=True, exist_ok=True)
     text, done = toml(overlay), folder / "row.json"
     if not again and done.exists():
         kept = json.loads(done.read_text())
         if kept["overlay"] == text:
-            return kept["code"], kept["error"], kept["megabytes"]
+            return kept["code"], kept["error"]
     (folder / "overlay.toml").write_text(text)
     paths = [str(CASES / scene / f) for f in ("scene.toml", *files)] + [str(folder / "overlay.toml")]
     line = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", "1", str(BIN / "lbm"), *paths, "--out", str(folder),
@@ -72,10 +71,9 @@ def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0):
     except subprocess.TimeoutExpired:
         code, output = 124, f"lbm | error | took longer than {limit:.0f} s"
     errors = re.findall(r"lbm \| error \| (.*)", output)
-    megabytes = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     error = errors[-1] if errors else ""
-    done.write_text(json.dumps({"overlay": text, "code": code, "error": error, "megabytes": megabytes}))
-    return code, error, megabytes
+    done.write_text(json.dumps({"overlay": text, "code": code, "error": error}))
+    return code, error
 
 
 def verdict(code, error):
