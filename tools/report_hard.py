@@ -177,7 +177,7 @@ def hard_cases(full):
                 for change in (0.03, 0.01, 0.003)], channel, ("variant-pressure.toml",), solids=False)
     if not full:
         return
-    yield Hard("the same, weak bonds: hundreds break at once", "bounded", "hydraulic_fracture",
+    yield Hard("pressure jump, weak bonds: hundreds break at once", "bounded", "hydraulic_fracture",
                [merged(QUIET, {"run": {"end_time": 0.003}})], files=("variant-strength60.toml",))
     yield Hard("cavity Re 10 000", "bounded", "lid_driven_cavity", [{"run": {"end_time": 100.0}}],
                files=("variant-re10000.toml",), solids=False)
