@@ -17,6 +17,11 @@ namespace {
 
 std::string shown(const toml::node& node) {
   if (node.is_floating_point()) return fmt::format("{}", *node.value<double>());
+  if (const toml::array* list = node.as_array()) {
+    std::string items;
+    for (const toml::node& item : *list) items += (items.empty() ? "" : ", ") + shown(item);
+    return "[" + items + "]";
+  }
   std::ostringstream text;
   node.visit([&text](const auto& n) { text << n; });
   return text.str();
@@ -29,7 +34,8 @@ const toml::table& no_table() {
 
 std::string bounds_text(const Bounds& b, const std::string& unit) {
   const std::string u = unit.empty() ? "" : " " + unit;
-  if (b.exclusive && b.lo == 0.0 && std::isinf(b.hi)) return "a positive number" + u;
+  if (b.exclusive && b.lo == 0.0 && std::isinf(b.hi))
+    return "a positive number" + (unit.empty() ? "" : " [" + unit + "]");
   if (std::isinf(b.lo) && std::isinf(b.hi)) return "a number" + u;
   if (std::isinf(b.hi)) return fmt::format("a number of at least {}{}", b.lo, u);
   return fmt::format("a number from {} to {}{}", b.lo, b.hi, u);

@@ -111,9 +111,11 @@ void judge_step(const Scene& s, Plan& plan) {
         fmt::format("τ - ½ = 3 ν Δt/Δx² = {:.2g} is too small for round-off", tau - 0.5),
         "take a finer cell, a longer time step or a lower velocity_scale");
   if (tau > 3.0)
-    throw InputError(s.file + ": numerics.time_step", fmt::format("gives τ = {:.3g}, above 3", tau),
-                     fmt::format("take at most {:.3g} s",
-                                 plan.units.dx * plan.units.dx / (3.0 * s.fluid.viscosity)));
+    throw InputError(
+        s.file + ": numerics.time_step",
+        fmt::format("gives τ = {:.3g}, above 3: walls and solids would be inexact", tau),
+        fmt::format("take at most {:.3g} s",
+                    plan.units.dx * plan.units.dx / (3.0 * s.fluid.viscosity)));
   if (plan.u_over_c > kWarnSpeed * 1.001)
     plan.warnings.push_back(fmt::format(
         "velocity_scale/C = {:.3g} exceeds {}: compressibility error", plan.u_over_c, kWarnSpeed));
@@ -247,6 +249,7 @@ double particle_volume(const Scene& s, double diameter) {
 
 Plan make_plan(const Scene& s) {
   Plan plan;
+  check_places(s);
   const double dx = cell_size(s);
   const bool solid = s.box.dimension == 3;
   plan.domain = {cells_along(s, s.box.size.x(), dx, "x"),
@@ -257,7 +260,6 @@ Plan make_plan(const Scene& s) {
                  solid ? to_side(s.box.sides[2]) : Side::Periodic};
   plan.units = {dx, 0.0, s.fluid.density, solid ? dx : s.box.depth, s.box.origin};
   plan.reynolds = s.fluid.velocity_scale * reference_length(s) / s.fluid.viscosity;
-  check_places(s);
   if (s.particles) plan.cells_per_diameter = s.particles->diameter.lo / dx;
   if (s.coupling) plan.fluid_steps = s.coupling->fluid_steps;
   choose_step(s, plan);

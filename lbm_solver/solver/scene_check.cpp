@@ -14,6 +14,7 @@ namespace {
 constexpr double kLightest = 0.1;                   // density of a particle over the fluid's
 constexpr double kDeepRest = 0.05, kDeepHit = 1.0;  // overlap over radius that goes unremarked
 constexpr double kManyBytes = 20e9;                 // of fields
+constexpr double kThick = 0.1;                      // m²/s: more than any honey
 
 std::string place_text(const Scene& s, const Vec3& x) {
   return s.box.dimension == 2 ? fmt::format("[{:.6g}, {:.6g}]", x.x(), x.y())
@@ -161,6 +162,13 @@ void check_balance(const Scene& s, Plan& plan) {
                     more > 0.0 ? "enters" : "leaves", more > 0.0 ? "rises" : "falls"));
 }
 
+void check_viscosity(const Scene& s, Plan& plan) {
+  if (s.fluid.viscosity > kThick)
+    plan.warnings.push_back(fmt::format(
+        "fluid.kinematic_viscosity = {:.3g} m²/s is that of tar (water: 1e-6): is its unit right?",
+        s.fluid.viscosity));
+}
+
 void check_contacts(const Scene& s, Plan& plan) {
   const ParticleScene& p = *s.particles;
   if (!p.contact_stiffness) return;
@@ -208,6 +216,7 @@ void check_places(const Scene& s) {
 void check_meaning(const Scene& s, Plan& plan) {
   check_speed(s, plan);
   check_balance(s, plan);
+  if (s.coupling) check_viscosity(s, plan);
   if (s.coupling) check_contacts(s, plan);
   check_output(s, plan);
 }

@@ -6,6 +6,7 @@
 #include <domain.h>
 #include <error.h>
 #include <fix_gravity.h>
+#include <fmt/format.h>
 #include <modify.h>
 #include <update.h>
 
@@ -35,7 +36,18 @@ Hello SolidHello::collect() {
   geometry(hello);
   forces(hello);
   particles(hello);
+  if (*hello.particles > 0) expect_motion();
   return hello;
+}
+
+/// A script that forgets its integrator runs to the end, and nothing moves.
+void SolidHello::expect_motion() const {
+  for (int i = 0; i < modify->nfix; ++i)
+    if (modify->fix[i]->time_integrate) return;
+  if (comm->me == 0)
+    fmt::print(stderr,
+               "liggghts | warning | no fix of the script moves its particles: they will stay "
+               "where they are; add fix ID all nve/sphere\n");
 }
 
 void SolidHello::geometry(Hello& hello) const {

@@ -19,6 +19,7 @@ class SolidHello : protected LAMMPS_NS::Pointers {
   void geometry(protocol::Hello& hello) const;
   void forces(protocol::Hello& hello) const;
   void particles(protocol::Hello& hello) const;
+  void expect_motion() const;
   int groupbit_, substeps_;
 };
 

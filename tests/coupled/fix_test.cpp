@@ -177,6 +177,16 @@ TEST_F(FixTest, WrongUseIsNamed) {
       "only one fix lbm/couple");
 }
 
+TEST_F(FixTest, ParticlesThatNothingMovesAreWarnedOf) {
+  const std::string warning = "no fix of the script moves its particles";
+  const std::string fix = "fix couple all lbm/couple every 10";
+  const auto moving = couple(script(fix, "run 55"));
+  EXPECT_EQ(moving.output.find(warning), std::string::npos) << moving.output;
+  const auto still = couple(script("unfix move\n" + fix, "run 55"));
+  EXPECT_EQ(still.exit_code, 0) << still.output;
+  EXPECT_NE(still.output.find(warning), std::string::npos) << still.output;
+}
+
 TEST_F(FixTest, ALaterRunThatCannotGoOnIsNamed) {
   const std::string fix = "fix couple all lbm/couple every 10";
   for (const std::string run : {"run ${steps}\nrun 10", "run 500 every 50 NULL"})

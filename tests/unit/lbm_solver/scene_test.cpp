@@ -60,6 +60,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "size = [0.02, 0.06]",
                 "size = [0.02, \"6 cm\"]",
                 {"box.size = '6 cm' is not a number; give a number [m]"}},
+        Spoiled{"one_length_too_many",
+                "size = [0.02, 0.06]",
+                "size = [0.02, 0.06, 0.1, 1]",
+                {"box.size = [0.02, 0.06, 0.1, 1] is no pair of numbers", "three lengths"}},
+        Spoiled{"millimetres_for_metres",
+                "diameter = 0.0025",
+                "diameter = 2.5",
+                {"particles.diameter = 2.5 m is wider than the box (0.02 m)"}},
         Spoiled{"missing_table", "[run]\nend_time = 1.0", "[output2]", {"run", "missing"}},
         Spoiled{"negative_viscosity",
                 "= 1e-5",
@@ -170,6 +178,8 @@ TEST(Scene, WhatWouldRunButNotAsItWasMeantIsWarnedOf) {
   EXPECT_TRUE(has(warnings("= 2.0e5", "= 100.0"), "0.0962 of its radius; 1.9e+02 N/m"));
   EXPECT_EQ(warnings("= 2.0e5", "= 200.0"), "");
   EXPECT_TRUE(has(warnings("end_time = 1.0", "end_time = 1000.0"), "2e+04 frames, 30.7 GB"));
+  EXPECT_TRUE(has(warnings("kinematic_viscosity = 1e-5", "kinematic_viscosity = 10.0"), "tar"));
+  EXPECT_EQ(warnings("kinematic_viscosity = 1e-5", "kinematic_viscosity = 0.01"), "");
 }
 
 Scene settling_disc() {
