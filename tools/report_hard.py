@@ -127,6 +127,11 @@ def alike(runs):
     return bool(part <= 0.01), percent(part)
 
 
+def rises(runs):
+    """Velocities at the end [mm/s]."""
+    return None, " ".join(f"{1e3 * run.probes()['vy'][-1]:.1f}" for run in runs) + " mm/s"
+
+
 def channel(runs):
     """Errors of the mean velocity in the middle of poiseuille, driven by 8 Pa/m [%]."""
     errors = []
@@ -166,6 +171,9 @@ def hard_cases(full):
                                      "fluid": {"velocity_scale": 0.15}, "run": {"end_time": 0.25}})
         yield Hard(f"free disc, ρ_s/ρ_f {ratio:g}", "at rest to 1e-10 C" if ratio == 1.0 else "stable, or refused", "settling_disc",
                    [light], rest if ratio == 1.0 else Hard.judge)
+        if ratio == 0.1 and full:
+            yield Hard("free disc, ρ_s/ρ_f 0.1, virtual mass 0.5, 1, 2, 4", "told: it rises alike", "settling_disc",
+                       [merged(light, {"coupling": {"virtual_mass": mass}}) for mass in (0.5, 1.0, 2.0, 4.0)], rises, solids=False)
         if ratio == 0.1:
             yield Hard("free disc, ρ_s/ρ_f 0.1, no virtual mass", "told: what the default is for", "settling_disc",
                        [merged(light, {"coupling": {"virtual_mass": 0.0}})], lambda runs: (None, "bounded"), solids=False)
@@ -185,6 +193,10 @@ def hard_cases(full):
                [array_run(tau, 5e-5) for tau in (0.505, 0.6, 1.5)], flat)
     yield Hard("array, D/h 2, 3, 4, 6, 8", "error told; no claim below 4", "cylinder_array",
                [array_run(0.8, 1e-3 / n) for n in (4, 6, 8, 12, 16)], told)
+    for stiffness in ((1e-4, 1e-3), (1e-2,)):
+        yield Hard(f"array, springs of {', '.join(map(str, stiffness))}", "told: what the default is for", "cylinder_array",
+                   [merged(array_run(0.8, 5e-5), {"numerics": {"scheme": "spring_immersed_boundary", "spring_stiffness": k}})
+                    for k in stiffness], told, solids=False)
     yield Hard("closed pores, 1e5 steps", "mass drift ≤ 1e-12", "cylinder_array",
                [array_run(0.8, 2.5e-5, [(x, y) for x in (0.0, 5e-4) for y in (0.0, 5e-4)], 5.1e-4,
                           end_time=1e5 * step_of(0.8, 2.5e-5), steady_below=0.0)], drift)
