@@ -169,15 +169,17 @@ def hard_cases(full):
     for ratio in (1.0, 0.75, 0.5, 0.1):
         light = merged(QUIET, FREE, {"particles": {"density": 1000.0 * ratio, "start": [[0.01, 0.02]]},
                                      "fluid": {"velocity_scale": 0.15}, "run": {"end_time": 0.25}})
-        yield Hard(f"free disc, ρ_s/ρ_f {ratio:g}", "at rest to 1e-10 C" if ratio == 1.0 else "stable, or refused", "settling_disc",
-                   [light], rest if ratio == 1.0 else Hard.judge)
+        yield Hard(f"free disc, ρ_s/ρ_f {ratio:g}", "at rest to 1e-10 C" if ratio == 1.0 else "stable, or refused",
+                   "settling_disc", [light], rest if ratio == 1.0 else Hard.judge)
         if ratio == 0.1 and full:
             yield Hard("free disc, ρ_s/ρ_f 0.1, virtual mass 0.5, 1, 2, 4", "told: it rises alike", "settling_disc",
-                       [merged(light, {"coupling": {"virtual_mass": mass}}) for mass in (0.5, 1.0, 2.0, 4.0)], rises, solids=False)
+                       [merged(light, {"coupling": {"virtual_mass": mass}}) for mass in (0.5, 1.0, 2.0, 4.0)], rises,
+                       solids=False)
         if ratio == 0.1:
             yield Hard("free disc, ρ_s/ρ_f 0.1, no virtual mass", "told: what the default is for", "settling_disc",
                        [merged(light, {"coupling": {"virtual_mass": 0.0}})], lambda runs: (None, "bounded"), solids=False)
-    yield Hard("free disc, τ = 1.5", "bounded", "couette_disc", [{"numerics": {"time_step": 0.00333}, "run": {"end_time": 10.0}}])
+    yield Hard("free disc, τ = 1.5", "bounded", "couette_disc",
+               [{"numerics": {"time_step": 0.00333}, "run": {"end_time": 10.0}}])
     yield Hard("pressure jump of 600 kPa into a packing", "overshoot < 10 %", "hydraulic_fracture",
                [{"output": {"fields_every": 2.5e-4, "probe_every": 1e-3}, "run": {"end_time": 0.003}}], overshoot)
     yield Hard("channel between pressures, Δρ/ρ 0.03, 0.01, 0.003", "error told; the step's rule allows 0.03", "poiseuille",
@@ -206,7 +208,8 @@ def hard_cases(full):
                [merged(EACH, FREE, {"particles": {"start": start}, "run": {"end_time": 0.2}})
                 for start in ([[0.01, 0.07], [0.0101, 0.06799]], [[0.0101, 0.06799], [0.01, 0.07]])], order)
     yield Hard("a disc through a periodic side", "the way of one half a period on to 1e-10 D", "disc_migration",
-               [merged(EACH, {"particles": {"start": [[x, 0.009]]}, "run": {"end_time": 0.08}}) for x in (0.0075, 0.0025)], crossing)
+               [merged(EACH, {"particles": {"start": [[x, 0.009]]}, "run": {"end_time": 0.08}}) for x in (0.0075, 0.0025)],
+               crossing)
     yield Hard("settling Re 14, cells uncovered", "force jump ≤ 5 % of the weight a step", "settling_disc",
                [merged(EACH, FREE, {"run": {"end_time": 0.5}})], jump(0.1, 0.5))
     yield Hard("5 to 50 substeps", "fall velocity within 1 %", "settling_disc",
@@ -273,8 +276,9 @@ def kind_of(row):
 
 def text_of_stability(rows):
     lines = ["## Stability on hard cases", "", "![stability](stability.png)", "",
-             "An operator with the solids that the scene's rule takes for it (*by rule*), or with others by name; `auto` and *by rule* "
-             "is the default, *papers* what the papers take. Behind a choice: what was measured, or the step at which it blew up.", "",
+             "An operator with the solids that the scene's rule takes for it (*by rule*), or with others by name; `auto` and "
+             "*by rule* is the default, *papers* what the papers take. Behind a choice: what was measured, or the step at which "
+             "it blew up.", "",
              "| case | asked | default | met by | missed by | refused | blown up |", "|---|---|---|---|---|---|---|"]
     for case in dict.fromkeys(r["case"] for r in rows):
         mine = [r for r in rows if r["case"] == case]

@@ -104,11 +104,12 @@ def shares(parts):
 
 def text_of_needs(rows):
     lines = ["## Only what a scene needs", "",
-             "Each scene as it is, and with the turbulence model, body force, lubrication and virtual mass that it does not ask "
-             "for, so weak that they change nothing to be seen (`auto` then takes other collisions, as it would): microseconds of "
-             f"the fluid's own work a step, the faster of {ROUNDS} runs in turn. Of a long scene its beginning, in which output, written "
-             "first and last, has more than its share.", "",
-             "| scene | until | on | off | share of the time | memory | µs a step | with everything on |", "|---|---|---|---|---|---|---|---|"]
+             "Each scene as it is, and with the turbulence model, body force, lubrication and virtual mass that it does not "
+             "ask for, so weak that they change nothing to be seen (`auto` then takes other collisions, as it would): "
+             f"microseconds of the fluid's own work a step, the faster of {ROUNDS} runs in turn. Of a long scene its beginning, "
+             "in which output, written first and last, has more than its share.", "",
+             "| scene | until | on | off | share of the time | memory | µs a step | with everything on |",
+             "|---|---|---|---|---|---|---|---|"]
     for r in rows:
         if r["code"]:
             lines.append(f"| {r['scene']} | – | {r['on']} | {r['off']} | – | – | failed ({r['code']}) | – |")
@@ -123,12 +124,13 @@ def text_of_needs(rows):
 
 def text_of_intervals(rows):
     lines = ["## Where a coupled interval goes", "",
-             "Microseconds of the same runs, one thread of the fluid beside one rank of LIGGGHTS: what the fluid does, and what "
-             "the solid does meanwhile (its other work: integration, walls, bonds, its side of the exchange).", "",
-             "| scene | intervals | one takes | fluid: " + " | ".join(FLUID) + " | solid: " + " | ".join([*SOLID, "waiting"]) + " |",
+             "Microseconds of the same runs, one thread of the fluid beside one rank of LIGGGHTS: what the fluid does, and "
+             "what the solid does meanwhile (its other work: integration, walls, bonds, its side of the exchange).", "",
+             f"| scene | intervals | one takes | fluid: {' | '.join(FLUID)} | solid: {' | '.join([*SOLID, 'waiting'])} |",
              "|" + "---|" * (3 + len(FLUID) + len(SOLID) + 1)]
     for r in rows:
         i = r["interval"]
         numbers = [i["whole"], *i["fluid"].values(), *i["solid"].values()]
-        lines.append(f"| {r['scene']} | {i['intervals']} | " + " | ".join(f"{n:.0f}" if n >= 10 else f"{n:.1f}" for n in numbers) + " |")
+        lines.append(f"| {r['scene']} | {i['intervals']} | "
+                     + " | ".join(f"{n:.0f}" if n >= 10 else f"{n:.1f}" for n in numbers) + " |")
     return lines + [""]

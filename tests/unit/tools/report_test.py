@@ -35,6 +35,16 @@ class Recommended(unittest.TestCase):
         self.assertIsNotNone(report.recommended(rows, 2.5))
 
 
+    def test_is_told_once_for_all_that_it_serves(self):
+        rows = [{**row("default", 1.0, 1.5), "choice": "a", "re_h": 3.0, "overlay": "[numerics]\ncell = 1\n"},
+                {**row("default", 3.0, 0.5), "choice": "b", "re_h": 3.0, "overlay": "[numerics]\ncell = 2\n"}]
+        text = report.text_of_recommended(rows)
+        self.assertEqual([line for line in text if line.startswith("For")],
+                         ["For 5 and 2 % at Re_h 3 take default, a: 1 s. Here that is",
+                          "For 1 % at Re_h 3 take default, b: 3 s. Here that is"])
+        self.assertIn("[numerics]\ncell = 2", text)
+
+
 class Advantage(unittest.TestCase):
     def test_is_told_in_time_and_in_error(self):
         rows = [row("default", 1.0, 1.0), row("papers", 4.0, 2.0, family=PAPERS), row("papers", 0.5, 8.0, family=PAPERS)]
@@ -76,7 +86,8 @@ class HardCases(unittest.TestCase):
         self.assertFalse(report_hard.order([first, FakeRun([a, b], diameter=1.0)])[0])
 
     def test_each_row_of_the_table_has_the_default_apart(self):
-        rows = [{"case": "c", "asked": "a", "operator": op, "solids": report_hard.RULE, "verdict": verdict, "met": met, "value": value}
+        rows = [{"case": "c", "asked": "a", "operator": op, "solids": report_hard.RULE, "verdict": verdict, "met": met,
+                 "value": value}
                 for op, verdict, met, value in (("auto", "bounded", True, "3 %"), ("trt", "bounded", False, "9 %"),
                                                 ("bgk", "blown up at step 7", None, ""))]
         self.assertIn("| c | a | met, 3 % | – | trt, by rule (9 %) | – | bgk, by rule (7) |",
