@@ -34,6 +34,13 @@ def step_of(tau, h):
     return (tau - 0.5) / 3 * h * h / 1e-6
 
 
+def array_run(tau, h, centres=((5e-4, 5e-4),), diameter=5.046265044e-4, numerics=(), **run):
+    """Overlay of cylinder_array: cylinders [m] on cells of h, at a relaxation time."""
+    return {"obstacle": [{"centre": list(centre), "diameter": diameter} for centre in centres],
+            "numerics": {**dict(numerics), "cell": h, "time_step": step_of(tau, h)},
+            "run": {"end_time": 8.0, **run}, "output": {"fields_every": 8.0, "probe_every": 0.1}}
+
+
 def array_rows(full):
     sides = [1e-4, 5e-5, 2.5e-5] + ([1.25e-5] if full else [])
     for label, (family, numerics) in SCHEMES.items():
@@ -44,10 +51,7 @@ def array_rows(full):
                 slow = "interpolated" in label or "implicit" in label  # minutes a row
                 if h < 2e-5 and tau < (1.0 if slow else 0.6) or slow and h < 5e-5 and tau < (0.6 if full else 1.0):
                     continue
-                places = [{"obstacle": [{"centre": [0.0005 + x * h, 0.0005 + y * h], "diameter": 5.046265044e-4}],
-                           "numerics": {**numerics, "cell": h, "time_step": step_of(tau, h)},
-                           "run": {"end_time": 8.0}, "output": {"fields_every": 8.0, "probe_every": 0.1}}
-                          for x, y in PLACES]
+                places = [array_run(tau, h, [(0.0005 + x * h, 0.0005 + y * h)], numerics=numerics) for x, y in PLACES]
                 yield label, family, f"D/h {5.046e-4 / h:.0f}, τ {tau}", places, ()
 
 

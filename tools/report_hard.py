@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import matplotlib.pyplot as plt
 import numpy as np
 from pictures import Run
-from report_cases import CASES_OF, step_of
+from report_cases import CASES_OF, array_run, step_of
 from report_runs import OUT, is_coupled, merged, module_of, progress, run_scene, verdict
 
 OPERATORS = ("bgk", "trt", "central_moment", "recursive_regularised")
@@ -52,7 +52,8 @@ def force_of(run, begin, end):
 
 
 def noise(begin, end):
-    """Change of the force on a disc from one step to the next, rms over its weight: 5 %."""
+    """Change of the force on a disc from one step to the next, rms over its weight: 5 %. (What a running mean of 50
+    steps takes away is twice that, since it holds the passing of whole cells, of 23 steps each.)"""
     def judge(runs):
         change = np.std(np.diff(force_of(runs[0], begin, end)))
         return bool(change <= 0.05), percent(change)
@@ -147,12 +148,6 @@ def channel(runs):
 QUIET = {"output": {"fields_every": 100.0, "probe_every": 0.01}}
 EACH = {"output": {"fields_every": 100.0, "probe_every": 1e-6}}  # step
 FREE = {"numerics": {"cells_per_diameter": 10, "solid_term": "auto", "collision": "auto"}}
-
-
-def array_run(tau, h, discs=((5e-4, 5e-4),), diameter=5.046265044e-4, **run):
-    return {"obstacle": [{"centre": list(c), "diameter": diameter} for c in discs],
-            "numerics": {"cell": h, "time_step": step_of(tau, h)}, "run": {"end_time": 8.0, **run},
-            "output": {"fields_every": 8.0, "probe_every": 0.1}}
 
 
 def hard_cases(full):

@@ -10,8 +10,6 @@ from launch import CASES, ROOT, environment
 
 OUT = ROOT / "out" / "report"
 BIN = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
-
-
 ENVIRONMENT = {**environment(2), "OMPI_MCA_pml": "ob1"}  # one machine: no search for networks, 0.2 s less of each start
 
 
