@@ -16,7 +16,6 @@
 #include <write_restart.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/solid_hello.h"
@@ -104,11 +103,16 @@ void FixLbmCouple::init() {
   if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
     fail("needs spheres; use atom_style granular");
   if (modify->n_fixes_style("lbm/couple") != 1) fail("only one fix lbm/couple may exist");
-  for (int i = 0; i < modify->my_index(this); ++i)
-    for (const char* later : {"enforce2d", "freeze"})
-      if (std::strcmp(modify->fix[i]->style, later) == 0)
-        fail(fmt::format("must stand before fix {} {}, which would not see the loads",
-                         modify->fix[i]->id, later));
+  const int here = modify->my_index(this);
+  held_still_ = 0;
+  for (int i = 0; i < modify->nfix; ++i) {
+    const std::string style = modify->fix[i]->style;
+    const bool holds = style == "freeze" || style == "setforce";
+    if (i < here && (holds || style == "enforce2d"))
+      fail(fmt::format("must stand before fix {} {}, which would not see the loads",
+                       modify->fix[i]->id, style));
+    if (holds) held_still_ |= modify->fix[i]->groupbit;
+  }
 }
 
 void FixLbmCouple::setup(int vflag) {
@@ -254,7 +258,8 @@ protocol::SolidSession::Reply FixLbmCouple::collect() {
 
 /// @param add_change  the forces of the step just done are still in f and will act in the next
 ///                    first half-step: replace the old load by the new one there too, so that the
-///                    impulse of an interval is its load times its length
+///                    impulse of an interval is its load times its length (not in particles whose
+///                    forces a later fix has set: those would creep)
 void FixLbmCouple::take_loads(bool add_change) {
   const auto reply = collect();
   underway_ = false;
@@ -277,6 +282,7 @@ void FixLbmCouple::take_loads(bool add_change) {
 }
 
 void FixLbmCouple::hold(int i, const protocol::Load& load, bool add_change) {
+  if (atom->mask[i] & held_still_) add_change = false;
   for (int k = 0; k < 3; ++k) {
     if (add_change) {
       atom->f[i][k] += load.force[k] - held_[i][k];

@@ -68,6 +68,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   double timeout_ = 300.0;
   std::string record_;
   double** held_ = nullptr;  ///< [nmax][6] force [N] and torque [N m] of the current interval
+  int held_still_ = 0;       ///< groups whose forces fix freeze or setforce sets
   LAMMPS_NS::bigint first_step_ = 0, step_ = 0;  ///< of the first run; the one that ended last
   double time_step_ = 0.0;                       ///< [s], of all runs
   double waited_before_ = 0.0;                   ///< [s], until the first step

@@ -80,25 +80,33 @@ void SolidHello::forces(Hello& hello) const {
 }
 
 void SolidHello::particles(Hello& hello) const {
-  double least[2] = {std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-  double most[2] = {0.0, 0.0};
+  constexpr double huge = std::numeric_limits<double>::max();
+  double least[3] = {huge, huge, huge};
+  double most[3] = {0.0, 0.0, -huge};
   std::int64_t count = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit_)) continue;
     ++count;
     const double r = atom->radius[i];
     const double density = atom->rmass[i] / particle_volume(domain->dimension, r, hello.depth);
-    const double values[2] = {r, density};
-    for (int k = 0; k < 2; ++k) {
+    const double values[3] = {r, density, atom->x[i][2]};
+    for (int k = 0; k < 3; ++k) {
       least[k] = std::min(least[k], values[k]);
       most[k] = std::max(most[k], values[k]);
     }
   }
-  MPI_Allreduce(MPI_IN_PLACE, least, 2, MPI_DOUBLE, MPI_MIN, world);
-  MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, world);
+  MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, world);
   MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_INT64_T, MPI_SUM, world);
   hello.particles = count;
   if (count == 0) return;
+  if (domain->dimension == 2 && most[2] - least[2] > 1e-3 * least[0])
+    error->all(FLERR,
+               fmt::format("fix lbm/couple: the {} discs lie at z from {:.6g} to {:.6g} m; in "
+                           "two dimensions all lie in one plane: create them at z = 0, in a "
+                           "region that is thin in z",
+                           count, least[2], most[2])
+                   .c_str());
   hello.radius = protocol::Range{least[0], most[0]};
   hello.density = protocol::Range{least[1], most[1]};
 }

@@ -98,6 +98,24 @@ TEST_F(FixTest, ImpulseIsTheLoadTimesTheInterval) {
   expect_impulse_of_40_intervals(states(received()));
 }
 
+TEST_F(FixTest, AFrozenParticleStaysWhereItIs) {
+  for (const std::string hold : {"freeze", "setforce 0.0 0.0 0.0"}) {
+    const auto job =
+        couple(script("group held id 2\nset atom 2 vx 0.0\n"
+                      "fix couple all lbm/couple every 10\nfix hold held " +
+                      hold));
+    ASSERT_EQ(job.exit_code, 0) << job.output;
+    const auto all = states(received());
+    ASSERT_EQ(all.size(), 2U * 41);
+    for (const auto& s : all)
+      if (s.id == 2) {
+        EXPECT_EQ(s.x, 0.97) << hold << ' ' << s.interval;
+        EXPECT_EQ(s.vy, 0.0) << hold << ' ' << s.interval;
+      }
+    EXPECT_NE(all.front().vy, all[2 * 40].vy);  // the free one does move
+  }
+}
+
 TEST_F(FixTest, LaterRunsGoOnAlsoFromTheMiddleOfAnInterval) {
   for (const std::string runs : {"run 100\nrun 300", "run 0\nrun 55\nrun ${steps}",
                                  "run 400 every 37 NULL", "run 63\nrun 400 upto every 50 NULL"}) {
@@ -175,6 +193,12 @@ TEST_F(FixTest, WrongUseIsNamed) {
   expect_error(
       couple(script("fix couple all lbm/couple every 10\nfix more all lbm/couple every 10")),
       "only one fix lbm/couple");
+}
+
+TEST_F(FixTest, DiscsBesideEachOtherInDepthAreNamed) {
+  expect_error(couple(script("create_atoms 1 single 0.5 0.5 0.2 units box\n"
+                             "fix couple all lbm/couple every 10")),
+               "in two dimensions all lie in one plane");
 }
 
 TEST_F(FixTest, ParticlesThatNothingMovesAreWarnedOf) {

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "lbm_solver/coupling/particles.h"
+#include "tests/support/free_disc.h"
 #include "tests/support/openings.h"
 #include "tests/support/scheme_fluid.h"
 
 namespace {
 
 using namespace lbm;
-using test::Case, test::make;
+using test::Case, test::FreeRun, test::make;
 
 /// A disc that a solid program would integrate, released from rest in a closed box.
 struct Released {
@@ -85,12 +85,7 @@ TEST(LightParticles, VirtualMassDoesNotChangeTheMotion) {
   EXPECT_NEAR(with / without, 1.0, 0.002);
 }
 
-/// A free disc in lattice units (cells, steps, density of the fluid 1), coupled as the programs
-/// are.
-struct FreeRun {
-  std::vector<Vec3> place, velocity;
-  std::vector<double> force_y;
-};
+/// A free disc in a fluid at rest; see test::free_run.
 FreeRun free_run(const Domain& domain, const Case& c, const std::string& collision, double tau,
                  double ratio, double radius, const Vec3& start, const Vec3& gravity, int steps,
                  int fluid_steps = 1) {
@@ -99,30 +94,12 @@ FreeRun free_run(const Domain& domain, const Case& c, const std::string& collisi
   scene.coupling.emplace();
   scene.particles.emplace();
   Fluid fluid = make(c, domain, collision, tau);
-  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene, fluid.domain());
-  const double mass = ratio * std::numbers::pi * radius * radius, interval = fluid_steps;
-  protocol::Particle p{{1, {start.x(), start.y(), 0.0}, {}, {}},
-                       {1, radius, mass, 0.5 * mass * radius * radius, 1}};
-  FreeRun run;
-  for (int s = 0; s < steps; s += fluid_steps) {
-    particles.arrive(std::vector{p}, interval);
-    for (int k = 0; k < fluid_steps; ++k) {
-      fluid.place(particles.bodies(k));
-      fluid.step();
-      particles.add(fluid.loads());
-    }
-    const auto load = particles.mean_loads(fluid_steps)[0];
-    for (int k = 0; k < 2; ++k) {
-      const double a = load.force[k] / mass + gravity[k];
-      p.state.x[k] += interval * (p.state.v[k] + 0.5 * interval * a);
-      p.state.v[k] += interval * a;
-    }
-    p.state.omega[2] += interval * load.torque[2] / p.shape.inertia;
-    run.place.emplace_back(p.state.x[0], p.state.x[1]);
-    run.velocity.emplace_back(p.state.v[0], p.state.v[1]);
-    run.force_y.push_back(load.force[1]);
-  }
-  return run;
+  return test::free_run(fluid, scene,
+                        {.ratio = ratio,
+                         .radius = radius,
+                         .start = start,
+                         .steps = steps,
+                         .fluid_steps = fluid_steps});
 }
 
 TEST(PeriodicCrossing, OfFacesAndCornersChangesNoTrajectory) {

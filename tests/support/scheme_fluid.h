@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// A fluid at rest with one of the fluid-solid schemes.
+/// A fluid at rest with one of the fluid-solid schemes, and the balance of its momentum.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "lbm_solver/solver/fluid.h"
 
@@ -27,6 +30,57 @@ inline Fluid make(const Case& c, const Domain& domain, const std::string& collis
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;
+}
+
+/// Momentum of a periodic fluid, without that of cells whose centres some discs cover.
+inline Vec3 momentum(const Fluid& fluid, const std::vector<Body>& without = {}) {
+  const Domain& d = fluid.domain();
+  Vec3 sum(0.0, 0.0);
+  for (int y = 0; y < d.ny; ++y)
+    for (int x = 0; x < d.nx; ++x) {
+      bool solid = false;
+      for (const Body& disc : without) {
+        Vec3 arm = Vec3(x + 0.5, y + 0.5) - disc.centre;
+        arm.x() -= d.nx * std::round(arm.x() / d.nx);
+        arm.y() -= d.ny * std::round(arm.y() / d.ny);
+        solid = solid || arm.norm() < disc.radius;
+      }
+      for (int q = 1; q < D2Q9::Q && !solid; ++q)
+        sum += fluid.arriving(q, x, y) * Vec3(D2Q9::c[q][0], D2Q9::c[q][1]);
+    }
+  return sum;
+}
+
+/// Where solids act by the links that cross their surface, the cells inside are none of the fluid.
+inline bool acts_by_links(const std::string& scheme) {
+  return scheme.find("bounce_back") != std::string::npos;
+}
+
+/// A step of a periodic fluid with discs in it: what the fluid's change of momentum and the
+/// impulses on the discs leave, over the latter where they are above 1.
+class MomentumBalance {
+ public:
+  MomentumBalance(Fluid& fluid, const std::string& scheme)
+      : fluid_(fluid), links_(acts_by_links(scheme)) {}
+
+  double step(const std::vector<Body>& discs) {
+    const Vec3 before = momentum(fluid_, covered_);
+    fluid_.place(discs);
+    fluid_.step();
+    if (links_) covered_ = discs;
+    Vec3 on_discs(0.0, 0.0);
+    for (const auto& load : fluid_.loads()) on_discs += load.force;
+    return (momentum(fluid_, covered_) - before + on_discs).norm() / std::max(1.0, on_discs.norm());
+  }
+
+ private:
+  Fluid& fluid_;
+  bool links_;
+  std::vector<Body> covered_;  // of the step before
+};
+
+inline void move(std::vector<Body>& discs) {
+  for (Body& d : discs) d.centre += d.velocity;
 }
 
 }  // namespace test

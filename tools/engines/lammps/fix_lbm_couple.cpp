@@ -58,6 +58,11 @@ int FixLbmCouple::setmask() {
 void FixLbmCouple::init() {
   if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
     error->all(FLERR, std::string("fix lbm/couple: needs spheres; use atom_style sphere"));
+  held_still_ = 0;
+  for (int i = 0; i < modify->nfix; ++i) {
+    const std::string style = modify->fix[i]->style;
+    if (style == "freeze" || style == "setforce") held_still_ |= modify->fix[i]->groupbit;
+  }
 }
 
 protocol::Hello FixLbmCouple::hello() const {
@@ -134,7 +139,8 @@ void FixLbmCouple::end_of_step() {
 }
 
 /// @param add_change  the force of the step just done acts in the next first half-step as well:
-///                    replace the old load by the new one there
+///                    replace the old load by the new one there (not in particles whose forces
+///                    a later fix has set: those would creep)
 void FixLbmCouple::exchange(bool add_change) {
   std::vector<protocol::State> states;
   std::vector<protocol::Shape> shapes;
@@ -161,7 +167,7 @@ void FixLbmCouple::exchange(bool add_change) {
     const int i = local[n];
     const protocol::Load& load = reply.loads[n];
     for (int k = 0; k < 3; ++k) {
-      if (add_change) {
+      if (add_change && !(atom->mask[i] & held_still_)) {
         atom->f[i][k] += load.force[k] - held_[i][k];
         atom->torque[i][k] += load.torque[k] - held_[i][3 + k];
       }

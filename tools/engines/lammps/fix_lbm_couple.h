@@ -54,6 +54,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   int substeps_ = 0;
   protocol::Vec3 gravity_{};  ///< [m/s²]
   double** held_ = nullptr;   ///< [nmax][6] force [N] and torque [N m] of the current interval
+  int held_still_ = 0;        ///< groups whose forces fix freeze or setforce sets
   LAMMPS_NS::bigint first_step_ = 0;
   std::int64_t interval_ = 0;
   bool stop_asked_ = false, checkpoint_asked_ = false;
