@@ -1,6 +1,6 @@
 """Speed against error of every choice, and which of them survive the hard cases.
 
-    tools/report [--quick|--full] [CASE…]     CASE: array, spheres, cylinder, couette, settling, stability, needs
+    tools/report [--quick|--full] [CASE…]     CASE: array, spheres, cylinder, couette, settling, fractions, stability, needs
 
 One run is one row: a scene of cases/ with an overlay, judged against a reference. What has been run is kept in
 out/report and not run again (--again does). Writes report.md, rows.csv, rows.json and a picture a case there.
@@ -21,9 +21,10 @@ import numpy as np
 from launch import ROOT
 from pictures import Run
 from report_cases import CASES_OF, OURS, PAPERS, SCHEMES, STAIRS
-from report_hard import draw_stability, stability, text_of_stability
+from report_fractions import fractions, text_of_fractions
 from report_needs import needs, text_of_needs
 from report_runs import OUT, module_of, progress, run_scene, toml, verdict
+from report_stability import draw_stability, stability, text_of_stability
 
 PASTED = ("fluid", "numerics", "coupling")  # tables of an overlay that a recommendation shows
 SCATTER = 1.2  # of the time of the same run on a shared machine
@@ -192,8 +193,25 @@ def text_of(case, rows):
     return lines + [""]
 
 
+def kept(name, rows):
+    """Writes rows to a file of their own."""
+    (OUT / f"{name}.json").write_text(json.dumps(rows, indent=1) + "\n")
+    return rows
+
+
+def stability_case(args):
+    rows = kept("stability", stability(args.full, args.again))
+    draw_stability(rows)
+    return text_of_stability(rows)
+
+
+OTHERS = {"fractions": lambda args: text_of_fractions(kept("fractions", fractions(args.again))),
+          "stability": stability_case,
+          "needs": lambda args: text_of_needs(kept("needs", needs(args.again)))}
+
+
 def main():
-    names = [*CASES_OF, "stability", "needs"]
+    names = [*CASES_OF, *OTHERS]
     p = argparse.ArgumentParser(prog="tools/report", description=__doc__.splitlines()[0])
     p.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(names)}; default: all")
     p.add_argument("--quick", action="store_true", help="under ten minutes (default)")
@@ -204,6 +222,7 @@ def main():
     args = p.parse_args()
     if args.list:
         print("\n".join([*(f"{name:10} {case[5]}" for name, case in CASES_OF.items()),
+                         "fractions  solid fraction of a cell: error and cost of some rules",
                          "stability  hard cases, each with every operator and scheme",
                          "needs      each scene against everything on, and its profile"]))
         return 0
@@ -216,16 +235,8 @@ def main():
     OUT.mkdir(parents=True, exist_ok=True)
     start, text, everything = time.monotonic(), [], []
     for case in args.cases or names:
-        if case == "stability":
-            rows = stability(args.full, args.again)
-            draw_stability(rows)
-            text += text_of_stability(rows)
-            (OUT / "stability.json").write_text(json.dumps(rows, indent=1) + "\n")
-            continue
-        if case == "needs":
-            rows = needs(args.again)
-            text += text_of_needs(rows)
-            (OUT / "needs.json").write_text(json.dumps(rows, indent=1) + "\n")
+        if case in OTHERS:
+            text += OTHERS[case](args)
             continue
         rows = measure(case, args.full, args.again)
         draw(case, rows)

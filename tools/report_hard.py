@@ -1,25 +1,14 @@
-"""The hard cases: each is run with every operator and scheme, and asked for what its row says."""
+"""The hard cases: what is run, and what is asked of it."""
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import matplotlib.pyplot as plt
-import numpy as np
-from pictures import Run
-from report_cases import CASES_OF, array_run, step_of
-from report_runs import OUT, is_coupled, merged, module_of, progress, run_scene, verdict
+from report_cases import array_run, step_of
+from report_judges import (alike, at_most, breaks_alike, burst, carried, channel, drift, flat, jump, noise, noises, order,
+                           overshoot, rest, rises, same_way, street, told, warned)
+from report_runs import ROOT, merged
 
-OPERATORS = ("bgk", "trt", "central_moment", "recursive_regularised")
-AUTO, RULE = "auto", "by rule"
-SOLIDS = {RULE: {}, "Noble–Torczynski": {"solid_term": "noble_torczynski"}, "Holdych": {"solid_term": "holdych"},
-          "superposition": {"solid_term": "superposition"},
-          "layered Noble–Torczynski": {"solid_term": "layered_noble_torczynski"},
-          "layered Holdych": {"solid_term": "layered_holdych"},
-          "B = ε": {"solid_term": "noble_torczynski", "weight": "fraction"}, "bounce-back": {"scheme": "bounce_back"},
-          "interpolated bounce-back": {"scheme": "interpolated_bounce_back"},
-          "implicit IBM": {"scheme": "implicit_immersed_boundary"}}
-PAPERS = ("bgk", "Noble–Torczynski")
+BONDS = ROOT / "tests" / "hard"  # scenes that are hard cases and nothing else
 
 
 @dataclass
@@ -34,113 +23,27 @@ class Hard:
     files: tuple = ()
     solids: bool = True  # without any, schemes do not differ
     stops: bool = False  # a run is to be stopped, not to come to its end
+    ranks: tuple = ()  # of the fluid, one for each run; default: one
 
 
-# ---- judges ------------------------------------------------------------------------------------------------------
+@dataclass
+class Steps:
+    """A row that shows in single steps of the fluid only; step_report does all of them at once."""
+
+    name: str
+    asked: str
+    judge: Callable  # of its values -> whether it is met, value
 
 
-def percent(part):
-    """Text of a part of one."""
-    return f"{100 * part:.2g} %" if abs(part) < 1 else f"{100 * part:.0f} %"
-
-
-def force_of(run, begin, end):
-    """Vertical force on the disc at each step of a time [s], over its weight."""
-    p, table = run.parameters, run.probes()
-    weight = p["particle_density"] * np.pi / 4 * p["diameter"]**2 * p["depth"] * -p["gravity_y"]
-    return table["fy"][(table["time"] > begin) & (table["time"] < end)] / weight
-
-
-def noise(begin, end):
-    """Change of the force on a disc from one step to the next, rms over its weight: 5 %. (What a running mean of 50
-    steps takes away is twice that, since it holds the passing of whole cells, of 23 steps each.)"""
-    def judge(runs):
-        change = np.std(np.diff(force_of(runs[0], begin, end)))
-        return bool(change <= 0.05), percent(change)
-    return judge
-
-
-def jump(begin, end):
-    """Largest change of the force on a disc from one step to the next over its weight: 5 %."""
-    def judge(runs):
-        largest = np.abs(np.diff(force_of(runs[0], begin, end))).max()
-        return bool(largest <= 0.05), percent(largest)
-    return judge
-
-
-def rest(runs):
-    """Largest speed of a disc over C: 1e-10."""
-    p, table = runs[0].parameters, runs[0].probes()
-    speed = np.hypot(table["vx"], table["vy"]).max() * p["time_step"] / p["cell"]
-    return bool(speed <= 1e-10), f"{speed:.0e}"
-
-
-def overshoot(runs):
-    """Of the highest pressure over that of the inlet: 10 %."""
-    run = runs[0]
-    over = max(run.frame(name)["pressure"].max() for _, name in run.frames()) / 6.0e5 - 1
-    return bool(over <= 0.1), f"{100 * over:+.0f} %"
-
-
-def drags(runs):
-    """Errors of the array's drag [%]."""
-    scene, _, measure, exact, *_ = CASES_OF["array"]
-    return [100 * (measure(run, module_of(scene)) / exact - 1) for run in runs]
-
-
-def flat(runs):
-    """Half of the range of the drag: 1 %."""
-    half = np.ptp(drags(runs)) / 2
-    return bool(half <= 1.0), f"±{half:.2g} %"
-
-
-def told(runs):
-    return None, " ".join(f"{e:+.0f}" for e in drags(runs)) + " %"
-
-
-def drift(runs):
-    """Of the mass in 1e5 steps: 1e-12."""
-    s = runs[0].summary
-    lost = abs(s["mass_drift"]) * 1e5 / s["steps"]
-    return bool(lost <= 1e-12), f"{lost:.0e}"
-
-
-def order(runs):
-    """Distance of the ways of two discs that changed their numbers, over a diameter: 1e-10."""
-    d = runs[0].parameters["diameter"]
-    far = max(np.abs(runs[0].probes(a)[x] - runs[1].probes(3 - a)[x]).max() for a in (1, 2) for x in "xy") / d
-    return bool(far <= 1e-10), f"{far:.0e}"
-
-
-def crossing(runs):
-    """Distance of the ways of a disc and of one half a period on, over a diameter: 1e-10."""
-    p = runs[0].parameters
-    a, b = (run.probes() for run in runs)
-    along = b["x"] - a["x"] + 0.5 * p["box_x"]
-    far = max(np.abs(along - p["box_x"] * np.round(along / p["box_x"])).max(), np.abs(a["y"] - b["y"]).max()) / p["diameter"]
-    return bool(far <= 1e-10), f"{far:.0e}"
-
-
-def alike(runs):
-    """Range of the largest fall velocity over its mean: 1 %."""
-    speeds = [-run.probes()["vy"].min() for run in runs]
-    part = np.ptp(speeds) / np.mean(speeds)
-    return bool(part <= 0.01), percent(part)
-
-
-def rises(runs):
-    """Velocities at the end [mm/s]."""
-    return None, " ".join(f"{1e3 * run.probes()['vy'][-1]:.1f}" for run in runs) + " mm/s"
-
-
-def channel(runs):
-    """Errors of the mean velocity in the middle of poiseuille, driven by 8 Pa/m [%]."""
-    errors = []
-    for run in runs:
-        p, u = run.parameters, run.frame(run.frames()[-1][1])["velocity"][:, :, 0]
-        exact = 8.0 / p["density"] * p["box_y"]**2 / (12 * p["kinematic_viscosity"])
-        errors.append(100 * (u[:, u.shape[1] // 2].mean() / exact - 1))
-    return None, " ".join(f"{e:+.1f}" for e in errors) + " %"
+STEPS = (
+    Steps("two discs, one through a corner", "fluid + solid − impulses ≤ 1e-12 a step", at_most(momentum=1e-12)),
+    Steps("three discs that touch in one cell", "the same; loads in any order alike to 1e-12", at_most(shared=1e-12, order=1e-12)),
+    Steps("discs that come late", "momentum to 1e-12; the way of one that was there to 1e-10 cells",
+          at_most(inserted=1e-12, late=1e-10)),
+    Steps("discs that go, and none at all", "momentum to 1e-12; a fluid without solids to 1e-13", at_most(removed=1e-12, none=1e-13)),
+    Steps("a disc that begins on a side, edge or corner", "the way of one inside to 1e-10 cells in 1000 steps", at_most(face=1e-10)),
+    Steps("an array carried at 0.02, 0.05, 0.1 C", "drag drift ≤ 1 %; of BGK, TRT 1.5 % at 0.05, 6 % at 0.1", carried),
+)
 
 
 # ---- cases ---------------------------------------------------------------------------------------------------------
@@ -182,6 +85,9 @@ def hard_cases(full):
                 for change in (0.03, 0.01, 0.003)], channel, ("variant-pressure.toml",), solids=False)
     if not full:
         return
+    for n in (20, 30):
+        yield Hard(f"cylinder Re 100, D/h {n}, Re_h {220 / n:.1f}", "largest drag told: TRT up to Re_h 5", "cylinder_flow",
+                   [{"numerics": {"cell": 0.1 / n}, "run": {"end_time": 8.0}}], street, ("variant-d10.toml",), solids=False)
     yield Hard("pressure jump, weak bonds: hundreds break at once", "bounded", "hydraulic_fracture",
                [merged(QUIET, {"run": {"end_time": 0.003}})], files=("variant-strength60.toml",))
     yield Hard("cavity Re 10 000", "bounded", "lid_driven_cavity", [{"run": {"end_time": 100.0}}],
@@ -194,130 +100,33 @@ def hard_cases(full):
         yield Hard(f"array, springs of {', '.join(map(str, stiffness))}", "told: what the default is for", "cylinder_array",
                    [merged(array_run(0.8, 5e-5), {"numerics": {"scheme": "spring_immersed_boundary", "spring_stiffness": k}})
                     for k in stiffness], told, solids=False)
-    yield Hard("closed pores, 1e5 steps", "mass drift ≤ 1e-12", "cylinder_array",
-               [array_run(0.8, 2.5e-5, [(x, y) for x in (0.0, 5e-4) for y in (0.0, 5e-4)], 5.1e-4,
-                          end_time=1e5 * step_of(0.8, 2.5e-5), steady_below=0.0)], drift)
+    pores = array_run(0.8, 2.5e-5, [(x, y) for x in (0.0, 5e-4) for y in (0.0, 5e-4)], 5.1e-4,
+                      end_time=1e5 * step_of(0.8, 2.5e-5), steady_below=0.0)
+    yield Hard("closed pores, 1e5 steps", "mass drift ≤ 1e-12", "cylinder_array", [pores], drift(1e-12))
+    yield Hard("closed pores, 1e5 steps, single precision", "mass drift ≤ 1e-6", "cylinder_array",
+               [merged(pores, {"numerics": {"precision": "single"}})], drift(1e-6))
     yield Hard("a disc too fast for its step", "stopped at 0.2 C", "settling_disc",
                [merged(QUIET, FREE, {"fluid": {"velocity_scale": 0.02}, "run": {"end_time": 0.5}})], stops=True)
+    yield Hard("a disc faster than said", "warned of above 0.1 C", "settling_disc",
+               [merged(QUIET, FREE, {"fluid": {"velocity_scale": 0.04}, "run": {"end_time": 0.4}})], warned)
     yield Hard("two discs in one cell, numbered either way", "the same ways to 1e-10 D", "drafting_kissing_tumbling",
                [merged(EACH, FREE, {"particles": {"start": start}, "run": {"end_time": 0.2}})
                 for start in ([[0.01, 0.07], [0.0101, 0.06799]], [[0.0101, 0.06799], [0.01, 0.07]])], order)
     yield Hard("a disc through a periodic side", "the way of one half a period on to 1e-10 D", "disc_migration",
                [merged(EACH, {"particles": {"start": [[x, 0.009]]}, "run": {"end_time": 0.08}}) for x in (0.0075, 0.0025)],
-               crossing)
+               same_way(0.5))
+    falling = merged(EACH, FREE, {"particles": {"start": [[0.0097, 0.0365]]}, "run": {"end_time": 0.42}})
+    yield Hard("a disc through the border of two ranks", "the way on one rank to 1e-10 D", "settling_disc",
+               [falling, falling], same_way(), ranks=(1, 2))
     yield Hard("settling Re 14, cells uncovered", "force jump ≤ 5 % of the weight a step", "settling_disc",
                [merged(EACH, FREE, {"run": {"end_time": 0.5}})], jump(0.1, 0.5))
-    yield Hard("5 to 50 substeps", "fall velocity within 1 %", "settling_disc",
-               [merged(FREE, {"output": {"fields_every": 100.0, "probe_every": 0.002}, "coupling": {"substeps": n},
-                              "run": {"end_time": 0.5}}) for n in (5, 15, 50)], alike)
-
-
-def choices(full, solids):
-    """Operator and solids of each column."""
-    if not solids:
-        return [(op, RULE) for op in (AUTO, *OPERATORS)]
-    if full:
-        return [(AUTO, RULE), *((op, term) for term in SOLIDS for op in OPERATORS)]
-    return [(op, RULE) for op in (AUTO, *OPERATORS)] + [(AUTO, term) for term in SOLIDS if term != RULE] + [PAPERS]
-
-
-def stability(full, again):
-    """A row for each case and choice: what became of it, whether it is what was asked, and the value."""
-    rows = []
-    for case in hard_cases(full):
-        for operator, term in choices(full, case.solids):
-            rows.append({"case": case.name, "asked": case.asked, "operator": operator, "solids": term,
-                         **outcome(case, {"numerics": {"collision": operator, **rule_of(case), **SOLIDS[term]}}, again)})
-            r = rows[-1]
-            progress("stability", f"{case.name} | {operator}, {term}: {r['verdict']}{', ' + r['value'] if r['value'] else ''}"
-                     + ("" if r["met"] is not False else ", missed"))
-    return rows
-
-
-def rule_of(case):
-    """A scene that names its solid term leaves it to the rule here."""
-    return {"solid_term": AUTO} if case.solids or is_coupled(case.scene) else {}
-
-
-def outcome(case, change, again):
-    runs = []
-    for i, overlay in enumerate(case.runs):
-        numerics = change["numerics"]
-        name = "-".join([case.name, *(str(v) for v in numerics.values()), str(i)])
-        folder = OUT / "stability" / re.sub(r"[^\w.]+", "_", name)
-        code, error = run_scene(folder, case.scene, merged(overlay, change), case.files, again, 300.0)
-        if case.stops and code == 3:
-            return {"verdict": "stopped", "met": True, "value": verdict(code, error).split()[-1], "reason": error}
-        if code:
-            return {"verdict": verdict(code, error), "met": None, "value": "", "reason": error}
-        runs.append(Run(folder))
-    if case.stops:
-        return {"verdict": "not stopped", "met": False, "value": "", "reason": ""}
-    met, value = case.judge(runs)
-    return {"verdict": "bounded", "met": met, "value": value, "reason": ""}
-
-
-# ---- text and picture ----------------------------------------------------------------------------------------------
-
-
-def kind_of(row):
-    """One of met, told, missed, refused, blown up."""
-    if row["verdict"] == "refused":
-        return "refused"
-    if row["verdict"].startswith(("blown", "failed")):
-        return "blown up"
-    return {True: "met", None: "told", False: "missed"}[row["met"]]
-
-
-def text_of_stability(rows):
-    lines = ["## Stability on hard cases", "", "![stability](stability.png)", "",
-             "An operator with the solids that the scene's rule takes for it (*by rule*), or with others by name; `auto` and "
-             "*by rule* is the default, *papers* what the papers take. Behind a choice: what was measured, or the step at which "
-             "it blew up.", "",
-             "| case | asked | default | met by | missed by | refused | blown up |", "|---|---|---|---|---|---|---|"]
-    for case in dict.fromkeys(r["case"] for r in rows):
-        mine = [r for r in rows if r["case"] == case]
-        default = next(r for r in mine if (r["operator"], r["solids"]) == (AUTO, RULE))
-        others = [r for r in mine if r is not default]
-        listed = lambda *kinds: "; ".join(label(r) for r in others if kind_of(r) in kinds) or "–"  # noqa: E731, B023
-        said = kind_of(default) + (f", {value_of(default)}" if value_of(default) else "")
-        lines.append(f"| {case} | {mine[0]['asked']} | {said} | " + " | ".join(
-            listed(*kinds) for kinds in (("met", "told"), ("missed",), ("refused",), ("blown up",))) + " |")
-    return lines + [""]
-
-
-def value_of(row):
-    return row["value"] or (row["verdict"].split()[-1] if row["verdict"].startswith("blown") else "")
-
-
-def name_of(operator, term):
-    return f"{operator}, {term}" + (" (papers)" if (operator, term) == PAPERS else "")
-
-
-def label(row):
-    return name_of(row["operator"], row["solids"]) + (f" ({value_of(row)})" if value_of(row) else "")
-
-
-COLORS = {"met": "#7fbf7f", "told": "#b9d9ee", "missed": "#f0b070", "refused": "#f0e070", "blown up": "#e07070"}
-
-
-def draw_stability(rows):
-    cases = list(dict.fromkeys(r["case"] for r in rows))
-    columns = list(dict.fromkeys((r["operator"], r["solids"]) for r in rows))
-    figure, axes = plt.subplots(figsize=(0.52 * len(columns) + 3.4, 0.36 * len(cases) + 2.2))
-    for r in rows:
-        x, y = columns.index((r["operator"], r["solids"])), cases.index(r["case"])
-        axes.add_patch(plt.Rectangle((x, y), 1, 1, facecolor=COLORS[kind_of(r)], edgecolor="white"))
-        text = value_of(r).removesuffix(" %").replace(" ", "\n")
-        axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=5 if "\n" not in text else 3.5)
-    axes.set_xlim(0, len(columns))
-    axes.set_ylim(len(cases), 0)
-    axes.set_xticks(np.arange(len(columns)) + 0.5, [name_of(*column) for column in columns], rotation=60, ha="right",
-                    rotation_mode="anchor", fontsize=6)
-    asked = {r["case"]: r["asked"] for r in rows}
-    axes.set_yticks(np.arange(len(cases)) + 0.5, [f"{case}: {asked[case]}" for case in cases], fontsize=6.5)
-    axes.grid(False)
-    axes.set_title("green: as asked (value) · orange: bounded, but not as asked · blue: told · yellow: refused · "
-                   "red: blown up, at step", fontsize=7)
-    figure.savefig(OUT / "stability.png", bbox_inches="tight")
-    plt.close(figure)
+    yield Hard("settling, Re_h 2, 5, 10, 20", "force noise a step told: TRT up to 5", "settling_disc",
+               [merged(EACH, FREE, {"fluid": {"velocity_scale": 0.1, "kinematic_viscosity": 0.1 * 2.5e-4 / re_h},
+                                    "run": {"end_time": 0.3}}) for re_h in (2, 5, 10, 20)], noises(0.15, 0.29), solids=False)
+    yield Hard("1, 5, 15, 50 substeps", "fall velocity within 1 %", "settling_disc",
+               [merged(FREE, {"particles": {"contact_stiffness": 200.0}, "coupling": {"substeps": n},
+                              "output": {"fields_every": 100.0, "probe_every": 0.002}, "run": {"end_time": 0.5}})
+                for n in (1, 5, 15, 50)], alike)
+    yield Hard("a bond broken by the flow, 1, 5, 15, 50 substeps", "its time within 1 %", BONDS / "bond_in_flow",
+               [{"coupling": {"substeps": n}} for n in (1, 5, 15, 50)], breaks_alike)
+    yield Hard("a hundred bonds that break at once", "momentum to 1e-12, energy to 1 %", BONDS / "bond_burst", [{}], burst)

@@ -163,14 +163,19 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* part
   max_speed_ = std::max(max_speed_, e.max_speed);
   mass_excess_ = e.mass_excess - fluid.mass_in();
   if (steady_) steady_->look(fluid);
-  if (std::max(e.max_speed, particle) <= kStopSpeed) return;
-  const bool by_fluid = e.max_speed > particle;
   const double speed = std::max(e.max_speed, particle);
-  throw NumericsError(fmt::format(
-      "interval {}: {} {}moves at {:.4g} m/s = {:.3g} C, above {}; raise fluid.velocity_scale "
-      "(now {} m/s)",
-      interval, by_fluid ? "the fluid" : "a particle", by_fluid ? "at " + place + " " : "",
-      speed * plan_.units.velocity(), speed, kStopSpeed, scene_.fluid.velocity_scale));
+  if (speed <= (warned_ ? kStopSpeed : 1.001 * kWarnSpeed)) return;
+  const std::string who = e.max_speed > particle ? "the fluid at " + place : "a particle";
+  const std::string what =
+      fmt::format("{} moves at {:.4g} m/s = {:.3g} C", who, speed * plan_.units.velocity(), speed);
+  const std::string remedy =
+      fmt::format("raise fluid.velocity_scale (now {} m/s)", scene_.fluid.velocity_scale);
+  if (speed > kStopSpeed)
+    throw NumericsError(
+        fmt::format("interval {}: {}, above {}; {}", interval, what, kStopSpeed, remedy));
+  log_.say(interval, "warning", "{}, above {}: compressibility error; a run stops at {}; {}", what,
+           kWarnSpeed, kStopSpeed, remedy);
+  warned_ = true;
 }
 
 /// Lines between the centres of bonded particles; across a periodic side there is none.

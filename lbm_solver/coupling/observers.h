@@ -84,6 +84,7 @@ class Observers {
   std::int64_t first_, guard_every_, intervals_done_ = 0;
   double next_probe_ = 0.0, next_field_ = 0.0;
   double max_speed_ = 0.0, last_speed_ = 0.0;           // of the fluid, lattice units
+  bool warned_ = false;                                 // of a speed above kWarnSpeed
   double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out
   std::chrono::steady_clock::time_point start_, last_progress_;
 };

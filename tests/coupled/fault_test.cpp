@@ -195,6 +195,20 @@ TEST(Numerics, AFluidThatGetsTooFastStopsBothWithStepPlaceAndValue) {
               "liggghts | error | the fluid program stopped: interval"});
 }
 
+TEST(Numerics, AFluidThatGetsFastIsWarnedOfOnce) {
+  SettlingDisc scene;
+  scene.change_scene("velocity_scale = 0.06", "velocity_scale = 0.04");  // 0.14 C in the end
+  scene.change_scene("end_time = 0.04", "end_time = 0.4");
+  const auto job = scene.run();
+  EXPECT_EQ(job.exit_code, 0) << job.output;
+  const std::string warning =
+      "C, above 0.1: compressibility error; a run stops at 0.2; raise "
+      "fluid.velocity_scale (now 0.04 m/s)";
+  const std::size_t first = job.output.find(warning);
+  ASSERT_NE(first, std::string::npos) << job.output;
+  EXPECT_EQ(job.output.find(warning, first + 1), std::string::npos) << job.output;
+}
+
 struct Damage {
   const char *script, *reason;
   int exit_code = 1;

@@ -13,6 +13,7 @@
 /// none       populations without any disc, against those of a fluid without solids, largest
 /// face       way of a disc whose centre begins exactly on a side, edge or corner of the box,
 ///            against one in the middle, 1000 steps, largest; both on multiples of 2⁻¹⁰ cells
+/// collision  what "auto" takes
 /// drift      drag on an array carried at 0.02, 0.05 and 0.1 cells a step, over that at rest, − 1
 #include <fmt/format.h>
 
@@ -76,6 +77,10 @@ double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b, 
 class Cases {
  public:
   explicit Cases(const NumericsScene& numerics) : numerics_(numerics) {}
+
+  std::string collision() const {
+    return make_plan(scene_of(numerics_, 48, 44, 0.7)).kernel.collision;
+  }
 
   double momentum() const {
     const Scene scene = scene_of(numerics_, 48, 44, 0.7);
@@ -271,10 +276,11 @@ int main(int argc, char** argv) {
   if (const auto code = protocol::read_command_line(app, "step_report", argc, argv)) return *code;
   try {
     const Cases cases(numerics);
-    const nlohmann::json values{
-        {"momentum", cases.momentum()}, {"shared", cases.shared()}, {"order", cases.order()},
-        {"inserted", cases.inserted()}, {"late", cases.late()},     {"removed", cases.removed()},
-        {"none", cases.none()},         {"face", cases.face()},     {"drift", cases.drift()}};
+    const nlohmann::json values{{"collision", cases.collision()}, {"momentum", cases.momentum()},
+                                {"shared", cases.shared()},       {"order", cases.order()},
+                                {"inserted", cases.inserted()},   {"late", cases.late()},
+                                {"removed", cases.removed()},     {"none", cases.none()},
+                                {"face", cases.face()},           {"drift", cases.drift()}};
     fmt::print("{}\n", values.dump());
     return protocol::kOk;
   } catch (const std::exception& error) {  // InputError, or a name that is not known

@@ -2,14 +2,16 @@
 
 import pathlib
 import sys
+import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 import numpy as np  # noqa: E402
 import report  # noqa: E402
-import report_hard  # noqa: E402
+import report_judges  # noqa: E402
 import report_needs  # noqa: E402
+import report_stability  # noqa: E402
 from report_cases import OURS, PAPERS  # noqa: E402
 
 
@@ -69,7 +71,7 @@ class HardCases(unittest.TestCase):
         for height, met in ((0.02, True), (0.03, False)):
             force = 3.0 + 1e-6 * time + height * (-1.0) ** time
             run = FakeRun([{"time": time, "fy": force}], **disc)
-            for judge in (report_hard.noise(0, 2000), report_hard.jump(0, 2000)):
+            for judge in (report_judges.noise(0, 2000), report_judges.jump(0, 2000)):
                 self.assertEqual(judge([run]), (met, f"{200 * height:.2g} %"))
 
     def test_a_way_is_the_same_half_a_period_on(self):
@@ -77,21 +79,48 @@ class HardCases(unittest.TestCase):
         for error, met in ((0.0, True), (1e-9, False)):
             other = {"x": np.array([0.2, 0.4, 0.5 + error]), "y": one["y"]}
             runs = [FakeRun([columns], box_x=1.0, diameter=1.0) for columns in (one, other)]
-            self.assertEqual(report_hard.crossing(runs)[0], met)
+            self.assertEqual(report_judges.same_way(0.5)(runs)[0], met)
 
     def test_numbers_of_discs_play_no_part(self):
         a, b = ({"x": np.array([x]), "y": np.array([2.0])} for x in (1.0, 3.0))
         first = FakeRun([a, b], diameter=1.0)
-        self.assertTrue(report_hard.order([first, FakeRun([b, a], diameter=1.0)])[0])
-        self.assertFalse(report_hard.order([first, FakeRun([a, b], diameter=1.0)])[0])
+        self.assertTrue(report_judges.order([first, FakeRun([b, a], diameter=1.0)])[0])
+        self.assertFalse(report_judges.order([first, FakeRun([a, b], diameter=1.0)])[0])
+
+    def test_a_frame_that_moves_is_judged_by_the_order_of_the_equilibrium(self):
+        for collision, drift, met in (("trt", [0.01, 0.015, 0.06], True), ("trt", [0.0, -0.016, 0.0], False),
+                                      ("central_moment", [0.01, 0.01, 0.01], True), ("central_moment", [0.0, 0.0, -0.011], False)):
+            self.assertEqual(report_judges.carried({"collision": collision, "drift": drift})[0], met)
+
+    def test_steps_that_ran_away_are_blown_up_and_not_judged(self):
+        case = report_stability.STEPS[1]  # shared, order
+        for values, verdict, met in (({"shared": 1e-13, "order": 0.0}, "bounded", True),
+                                     ({"shared": 1e-13, "order": 1e-11}, "bounded", False),
+                                     ({"shared": 1e-13, "order": None}, "blown up", None),
+                                     ({"shared": 1e-13, "order": 1e23}, "blown up", None)):
+            became = report_stability.outcome_of_steps(case, values)
+            self.assertEqual((became["verdict"], became["met"]), (verdict, met))
+
+    def test_a_burst_keeps_momentum_and_energy(self):
+        for lost, met in ((0.0, True), (0.03, False)):
+            with tempfile.TemporaryDirectory() as folder:
+                # two discs of 1 kg: the fluid brakes the first by 1 N for 1 s; the ledger holds 0.5 J, and loses some
+                frames = "".join(f"ITEM: TIMESTEP\n{step}\n" + 7 * "head\n" + f"1 1.0 0.5 {x} 0 {v} 0 0 -1 0 0\n"
+                                 "2 1.0 0.5 9 0 -1.0 0 0 0 0 0\n" for step, v, x in ((0, 2.0, 0.0), (1, 1.0, 1.5)))
+                log = "".join(f"{step:8d} 1 {energy} 0 0 0 0 \n" for step, energy in ((0, 0.5), (20, 0.5 - 2.5 * lost)))
+                pathlib.Path(folder, "discs.txt").write_text(frames)
+                pathlib.Path(folder, "liggghts.log").write_text(log)
+                run = FakeRun([], interval=1.0)
+                run.folder = pathlib.Path(folder)
+                self.assertEqual(report_judges.burst([run])[0], met)
 
     def test_each_row_of_the_table_has_the_default_apart(self):
-        rows = [{"case": "c", "asked": "a", "operator": op, "solids": report_hard.RULE, "verdict": verdict, "met": met,
+        rows = [{"case": "c", "asked": "a", "operator": op, "solids": report_stability.RULE, "verdict": verdict, "met": met,
                  "value": value}
                 for op, verdict, met, value in (("auto", "bounded", True, "3 %"), ("trt", "bounded", False, "9 %"),
                                                 ("bgk", "blown up at step 7", None, ""))]
         self.assertIn("| c | a | met, 3 % | – | trt, by rule (9 %) | – | bgk, by rule (7) |",
-                      report_hard.text_of_stability(rows))
+                      report_stability.text_of_stability(rows))
 
 
 class Needs(unittest.TestCase):
