@@ -21,12 +21,16 @@ import numpy as np
 from launch import ROOT
 from pictures import Run
 from report_cases import CASES_OF, OURS, PAPERS, SCHEMES, STAIRS
+from report_details import details
 from report_fractions import fractions, text_of_fractions
 from report_needs import needs, text_of_needs
 from report_runs import OUT, module_of, progress, run_scene, toml, verdict
 from report_stability import draw_stability, stability, text_of_stability
 
 PASTED = ("fluid", "numerics", "coupling")  # tables of an overlay that a recommendation shows
+COLUMNS = ("Error: mean over places of the body within a cell, spread: its range over them. Load σ: root mean square of what the "
+           "measured load does beside a line in the last quarter of a run, over its mean; – where there are few records. "
+           "Seconds: of the fluid, without waiting. `rows.csv` has some twenty columns more.")
 SCATTER = 1.2  # of the time of the same run on a shared machine
 
 
@@ -62,7 +66,8 @@ def measure(case, full, again):
                "steps": steps, "overlay": toml({k: v for k, v in places[0].items() if k in PASTED}), "built": built}
         if summary:
             row.update({key: summary[key] for key in ("mlups", "ma_max", "re_h", "mass_drift", "substeps", "time_share")},
-                       tau=summary["parameters"]["tau"], megabytes=sum(summary["megabytes"].values()))
+                       tau=summary["parameters"]["tau"], megabytes=sum(summary["megabytes"].values()),
+                       **details(case, run, places[0], again))
         rows.append(row)
         text = f"{row['error_percent']:+.2f} % (spread {row['spread_percent']:.2f}), {row['seconds']:.3g} s" \
             if status == "ok" else status
@@ -183,12 +188,13 @@ def text_of(case, rows):
             continue
         lines.append(f"Ours against the front of {name}: {said(cost, 'faster at its error', 'as exact')}, "
                      f"{said(error, 'more exact in its time', 'as cheap')}.  ")
-    lines += [*text_of_recommended(rows), "", "| scheme | choice | error % | spread % | seconds | steps | Re_h | Ma | status |",
-              "|---|---|---|---|---|---|---|---|---|"]
+    lines += [*text_of_recommended(rows), "", "| scheme | choice | error % | spread % | load σ % | seconds | steps | Re_h | Ma | status |",
+              "|---|---|---|---|---|---|---|---|---|---|"]
     for r in rows:
         ok = r["status"] == "ok"
-        lines.append(f"| {r['scheme']} | {r['choice']} | " + (f"{r['error_percent']:+.2f} | {r['spread_percent']:.2f} | "
-                     f"{r['seconds']:.3g} | {r['steps']} | {r['re_h']:.3g} | {r['ma_max']:.3g}" if ok else "– | – | – | – | – | –")
+        noise = f"{r['load_sigma_percent']:.2g}" if ok and "load_sigma_percent" in r else "–"
+        lines.append(f"| {r['scheme']} | {r['choice']} | " + (f"{r['error_percent']:+.2f} | {r['spread_percent']:.2f} | {noise} | "
+                     f"{r['seconds']:.3g} | {r['steps']} | {r['re_h']:.3g} | {r['ma_max']:.3g}" if ok else "– |" * 6 + " –")
                      + f" | {r['status']} |")
     return lines + [""]
 
@@ -242,7 +248,7 @@ def main():
         draw(case, rows)
         text += text_of(case, rows)
         everything += rows
-    (OUT / "report.md").write_text("\n".join([f"# Speed against error\n\n{machine()}\n", *text]) + "\n")
+    (OUT / "report.md").write_text("\n".join([f"# Speed against error\n\n{machine()}\n", COLUMNS, "", *text]) + "\n")
     if everything:
         (OUT / "rows.json").write_text(json.dumps(everything, indent=1) + "\n")
         columns = list(dict.fromkeys(key for row in everything for key in row if key != "time_share"))

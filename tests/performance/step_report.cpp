@@ -82,21 +82,8 @@ class Cases {
     return make_plan(scene_of(numerics_, 48, 44, 0.7)).kernel.collision;
   }
 
-  double momentum() const {
-    const Scene scene = scene_of(numerics_, 48, 44, 0.7);
-    const Plan plan = make_plan(scene);
-    Fluid fluid = make_fluid(scene, plan);
-    test::MomentumBalance balance(fluid, plan.scheme);
-    return largest_rest(balance, two_discs(), 200);
-  }
-
-  double shared() const {
-    const Scene scene = scene_of(numerics_, 48, 44, 0.7);
-    const Plan plan = make_plan(scene);
-    Fluid fluid = make_fluid(scene, plan);
-    test::MomentumBalance balance(fluid, plan.scheme);
-    return largest_rest(balance, three_discs(), 20);
-  }
+  double momentum() const { return largest_rest(two_discs(), 200); }
+  double shared() const { return largest_rest(three_discs(), 20); }
 
   double order() const {
     const Scene scene = scene_of(numerics_, 48, 44, 0.7);
@@ -176,7 +163,11 @@ class Cases {
   }
 
  private:
-  static double largest_rest(test::MomentumBalance& balance, std::vector<Body> discs, int steps) {
+  double largest_rest(std::vector<Body> discs, int steps) const {
+    const Scene scene = scene_of(numerics_, 48, 44, 0.7);
+    const Plan plan = make_plan(scene);
+    Fluid fluid = make_fluid(scene, plan);
+    test::MomentumBalance balance(fluid, plan.scheme);
     double largest = 0.0;
     for (int step = 0; step < steps; ++step) {
       keep_largest(largest, balance.step(discs));
@@ -234,31 +225,14 @@ class Cases {
         {.ratio = 2.5, .radius = 5.0, .start = start, .inserted = inserted, .steps = steps});
   }
 
-  /// Drag over μ U on a square array, c = 0.2, carried along with its fluid; Re_D 0.1.
   double array_drag(double carried) const {
-    constexpr int n = 20, steps = 6000, last = 2000;  // the passage of whole cells
-    constexpr double tau = 0.6, nu = (tau - 0.5) / 3.0;
-    const double r = n * std::sqrt(0.2 / std::numbers::pi), u = 0.1 * nu / (2.0 * r);
-    const double g = 51.53 * nu * u / (n * n);
-    Scene scene = scene_of(numerics_, n, n, tau);
-    scene.fluid.body_force = {g, 0.0};
+    const test::SlowArray array;
+    Scene scene = scene_of(numerics_, array.n, array.n, array.tau);
+    scene.fluid.body_force = {array.g, 0.0};
     scene.fluid.velocity_scale = 0.1;
     scene.particles->diameter = {9.0, 9.0};
     Fluid fluid = make_fluid(scene, make_plan(scene));
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n; ++x) fluid.set_equilibrium(x, y, 1.0, {carried, 0.0});
-    Body disc{1, {0.5 * n, 0.5 * n + 0.23}, r, {carried, 0.0}, 0.0};
-    double relative = 0.0;
-    for (int s = 0; s < steps; ++s) {
-      fluid.place(std::vector{disc});
-      fluid.step();
-      disc.centre.x() = std::fmod(disc.centre.x() + carried, n);
-      if (s >= steps - last && s % 10 == 0)
-        for (int y = 0; y < n; ++y)
-          for (int x = 0; x < n; ++x)
-            relative += (fluid.cell(x, y).u.x() - carried) / (n * n * (last / 10.0));
-    }
-    return g * n * n / (nu * relative);
+    return array.drag(fluid, carried);
   }
 
   NumericsScene numerics_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,34 @@ class MomentumBalance {
   Fluid& fluid_;
   bool links_;
   std::vector<Body> covered_;  // of the step before
+};
+
+/// A square array of cylinders in Stokes flow, c = 0.2, Re 0.1, in a fluid that a body force
+/// drives.
+struct SlowArray {
+  static constexpr int n = 20;  // cells a period
+  static constexpr double tau = 0.6, nu = (tau - 0.5) / 3.0;
+  const double radius = n * std::sqrt(0.2 / std::numbers::pi);
+  const double g = 51.53 * nu * (0.1 * nu / (2.0 * radius)) / (n * n);  ///< acceleration along x
+
+  /// Drag over mu U of the array carried along with its fluid, `carried` cells a step.
+  double drag(Fluid& fluid, double carried) const {
+    constexpr int steps = 6000, last = 2000;  // the passage of whole cells
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) fluid.set_equilibrium(x, y, 1.0, {carried, 0.0});
+    Body disc{1, {0.5 * n, 0.5 * n + 0.23}, radius, {carried, 0.0}, 0.0};
+    double relative = 0.0;
+    for (int s = 0; s < steps; ++s) {
+      fluid.place(std::vector{disc});
+      fluid.step();
+      disc.centre.x() = std::fmod(disc.centre.x() + carried, n);
+      if (s >= steps - last && s % 10 == 0)
+        for (int y = 0; y < n; ++y)
+          for (int x = 0; x < n; ++x)
+            relative += (fluid.cell(x, y).u.x() - carried) / (n * n * (last / 10.0));
+    }
+    return g * n * n / (nu * relative);
+  }
 };
 
 inline void move(std::vector<Body>& discs) {

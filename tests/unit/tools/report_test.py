@@ -9,6 +9,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 import numpy as np  # noqa: E402
 import report  # noqa: E402
+import report_details  # noqa: E402
 import report_judges  # noqa: E402
 import report_needs  # noqa: E402
 import report_stability  # noqa: E402
@@ -52,6 +53,33 @@ class Advantage(unittest.TestCase):
         rows = [row("default", 1.0, 1.0), row("papers", 4.0, 2.0, family=PAPERS), row("papers", 0.5, 8.0, family=PAPERS)]
         cost, error = report.advantage(rows, PAPERS)
         self.assertEqual((cost, error), ([0.5, 4.0], [0.0, 2.0]))
+
+
+class Details(unittest.TestCase):
+    def run_of(self, log, obstacles):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        run = FakeRun([], scene="settling_disc")
+        run.folder = pathlib.Path(folder.name)
+        (run.folder / "lbm.log").write_text(log)
+        (run.folder / "obstacles.csv").write_text("time,obstacle,fx,fy,torque\n" + "".join(
+            f"{time},1,{load},0,0\n" for time, load in enumerate(obstacles)))
+        return run
+
+    def test_what_the_run_took_fills_what_the_overlay_leaves_open(self):
+        run = self.run_of("collision    central_moment [auto: …]\nsolids       immersed_moving_boundary, holdych [auto: …]\n", [])
+        auto = {"numerics": {"collision": "auto", "solid_term": "auto"}}
+        self.assertEqual(report_details.made_with(run, auto, 2),
+                         {"lattice": "D2Q9", "precision": "double", "scheme": "immersed_moving_boundary",
+                          "collision": "central_moment", "solid_term": "holdych", "weight": "viscous"})
+        links = report_details.made_with(run, {"numerics": {"collision": "bgk", "scheme": "bounce_back"}}, 3)
+        self.assertEqual(links, {"lattice": "D3Q19", "precision": "double", "scheme": "bounce_back", "collision": "bgk"})
+
+    def test_noise_is_what_a_line_leaves_of_the_last_quarter(self):
+        loads = [1e6] * 300 + [200.0 + 0.01 * i + (-1) ** i for i in range(100)]
+        noise = report_details.load_noise("cylinder", self.run_of("", loads))
+        self.assertAlmostEqual(noise["load_sigma_percent"], 0.5, 2)
+        self.assertEqual(report_details.load_noise("cylinder", self.run_of("", loads[:12])), {})
 
 
 class FakeRun:
