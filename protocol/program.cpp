@@ -38,15 +38,6 @@ double grace() {
   return set ? std::atof(set) : 0.6;
 }
 
-std::string last_error_line(const std::string& program, const std::string& log_file) {
-  std::ifstream log(log_file);
-  std::string line, found;
-  while (std::getline(log, line))
-    if (line.starts_with("ERROR")) found = line;
-  return found.empty() ? program + " stopped with an error; see its output, or give it -log FILE"
-                       : found;
-}
-
 }  // namespace
 
 void catch_signals() {
@@ -111,10 +102,19 @@ Deadline::~Deadline() {
   alarm(0);
 }
 
-void end_with_engine(const std::string& program, const std::string& log_file, Channel* channel,
-                     bool lonely) {
+std::string last_error_line(const std::vector<std::string>& files) {
+  std::string line, found;
+  for (const std::string& file : files) {
+    std::ifstream text(file);
+    while (std::getline(text, line))
+      if (line.starts_with("ERROR")) found = line;
+  }
+  return found;
+}
+
+void end_with_engine(const std::string& reason, Channel* channel, bool lonely) {
   if (channel && (lonely || channel->local_rank() == 0)) {
-    channel->raise({kFault, last_error_line(program, log_file)});
+    channel->raise({kFault, reason});
     channel->await_farewell(kFarewellSeconds);
   } else if (channel) {
     sleep(static_cast<unsigned>(kFarewellSeconds) + 1);  // rank 0 ends the job

@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "protocol/channel.h"
 
@@ -18,12 +19,14 @@ int exit_code_of(const std::exception& error);
 /// @param channel  null before there is a partner
 int leave_after(const std::exception& error, const std::string& program, Channel* channel);
 
+/// Last line that begins with ERROR, as LAMMPS and LIGGGHTS write it, of some files; empty where
+/// there is none.
+std::string last_error_line(const std::vector<std::string>& files);
+
 /// Ends a program whose engine has ended itself, as LAMMPS and LIGGGHTS do after an error: tells
-/// the partner the last line of the engine's log that begins with ERROR, and ends the whole MPI
-/// job.
+/// the partner the reason, and ends the whole MPI job.
 /// @param lonely  this rank alone comes here; else all of its program do
-[[noreturn]] void end_with_engine(const std::string& program, const std::string& log_file,
-                                  Channel* channel, bool lonely);
+[[noreturn]] void end_with_engine(const std::string& reason, Channel* channel, bool lonely);
 
 /// From now on SIGTERM and SIGINT do not kill at once. mpirun sends SIGTERM to the survivors when a
 /// program of the job dies, and to all when it is told to end.

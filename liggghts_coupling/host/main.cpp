@@ -5,17 +5,22 @@
 #include <input.h>
 #include <lammps.h>
 #include <mpi.h>
+#include <sys/mman.h>
+#include <variable.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "liggghts_coupling/bond/pair_bond.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/mpi_guards.h"
 #include "liggghts_coupling/host/register_styles.h"
+#include "liggghts_coupling/host/script_names.h"
 #include "protocol/program.h"
 
 namespace dem {
@@ -74,11 +79,52 @@ void check_script(const Arguments& arguments) {
       protocol::kBadInput);
 }
 
-void run_script(Arguments& arguments, MPI_Comm local) {
+/// What LIGGGHTS writes and says, and where its last error can be found.
+struct Output {
+  std::string script, log, screen;
+  LAMMPS_NS::LAMMPS* lammps = nullptr;
+
+  std::string reason();
+};
+
+/// Why LIGGGHTS has ended itself. Of a variable that is not there, it does not say the name.
+std::string Output::reason() {
+  std::fflush(nullptr);  // LIGGGHTS has not
+  const std::string found = protocol::last_error_line({log, screen});
+  const std::string said = found.empty() ? "LIGGGHTS stopped with an error; see its output" : found;
+  // a variable that cannot be read ends it once more, and leads here again
+  LAMMPS_NS::LAMMPS* const one = std::exchange(lammps, nullptr);
+  if (!one || (!found.empty() && found.find("illegal variable") == std::string::npos)) return said;
+  const auto value = [one](std::string name) -> std::optional<std::string> {
+    LAMMPS_NS::Variable& variables = *one->input->variable;
+    if (variables.find(name.data()) < 0) return std::nullopt;
+    const char* text = variables.retrieve(name.data());
+    return text ? text : "";
+  };
+  const auto undefined = undefined_names(script, value);
+  if (undefined.empty()) return said;
+  return fmt::format("{}: nothing defines {}; lbm check --liggghts-vars SCENE lists what it offers",
+                     said, fmt::join(undefined, ", "));
+}
+
+/// With `-screen none` LIGGGHTS would say nothing of an error on one rank, which its log has not:
+/// it writes to memory instead.
+std::string keep_screen(Arguments& arguments) {
+  for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
+    if ((arguments[i] != "-screen" && arguments[i] != "-sc") || arguments[i + 1] != "none")
+      continue;
+    const int file = memfd_create("screen", 0);
+    if (file >= 0) return arguments[i + 1] = fmt::format("/proc/self/fd/{}", file);
+  }
+  return {};
+}
+
+void run_script(Arguments& arguments, MPI_Comm local, Output& output) {
   std::vector<char*> argv;
   for (std::string& a : arguments) argv.push_back(a.data());
   register_bonds();
   auto* lammps = new LAMMPS_NS::LAMMPS(static_cast<int>(argv.size()), argv.data(), local);
+  output.lammps = lammps;
   register_styles(*lammps);
   if (Coupling::instance().channel)
     protocol::catch_signals();  // after LIGGGHTS set its own handlers
@@ -88,14 +134,16 @@ void run_script(Arguments& arguments, MPI_Comm local) {
     coupling.session->goodbye(coupling.agreed
                                   ? "its script ended before the fluid's end time"
                                   : "its script ended without fix lbm/couple and a run");
+  output.lammps = nullptr;
   delete lammps;
 }
 
 void run(Arguments& arguments) {
   Coupling& coupling = Coupling::instance();
   coupling.world = protocol::connect(protocol::Role::Solid);
-  const std::string log = option(arguments, "-log", "-l");
-  guard_mpi(coupling.world.local, log.empty() ? "log.liggghts" : log);
+  Output output{.log = option(arguments, "-log", "-l")};
+  if (output.log.empty()) output.log = "log.liggghts";
+  guard_mpi(coupling.world.local, [&output] { return output.reason(); });
   if (coupling.world.coupled()) {
     coupling.channel = protocol::make_mpi_channel(coupling.world, protocol::Role::Solid);
     if (option(arguments, "-in", "-i").empty())
@@ -107,7 +155,9 @@ void run(Arguments& arguments) {
     check_script(arguments);
   }
   add_defaults(arguments);
-  run_script(arguments, coupling.world.local);
+  output.script = option(arguments, "-in", "-i");
+  if (coupling.world.coupled()) output.screen = keep_screen(arguments);
+  run_script(arguments, coupling.world.local, output);
 }
 
 }  // namespace

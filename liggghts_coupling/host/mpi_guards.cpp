@@ -8,7 +8,7 @@ namespace dem {
 namespace {
 
 MPI_Comm local = MPI_COMM_NULL;
-std::string log_file;
+std::function<std::string()> reason;
 bool meant = false;
 
 MPI_Comm redirected(MPI_Comm comm) {
@@ -16,14 +16,14 @@ MPI_Comm redirected(MPI_Comm comm) {
 }
 
 [[noreturn]] void end_with_error(bool lonely) {
-  protocol::end_with_engine("LIGGGHTS", log_file, Coupling::instance().channel.get(), lonely);
+  protocol::end_with_engine(reason(), Coupling::instance().channel.get(), lonely);
 }
 
 }  // namespace
 
-void guard_mpi(MPI_Comm comm, const std::string& log) {
+void guard_mpi(MPI_Comm comm, std::function<std::string()> why) {
   local = comm;
-  log_file = log;
+  reason = std::move(why);
 }
 
 void finalize_mpi() {

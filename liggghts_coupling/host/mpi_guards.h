@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <string>
 
 namespace dem {
@@ -13,8 +14,9 @@ namespace dem {
 /// - calls on MPI_COMM_WORLD from VTK dumps and timing output use `local` instead;
 /// - an MPI_Finalize or MPI_Abort that we did not ask for is LIGGGHTS ending with an error: the
 /// fluid
-///   is told, with LIGGGHTS' own message from its log, and the job is aborted.
-void guard_mpi(MPI_Comm local, const std::string& log_file);
+///   is told why, and the job is aborted.
+/// @param reason  of such an end, in words
+void guard_mpi(MPI_Comm local, std::function<std::string()> reason);
 
 /// The one MPI_Finalize that is meant.
 void finalize_mpi();

@@ -31,6 +31,7 @@ Hello SolidHello::collect() {
   hello.role = protocol::Role::Solid;
   hello.program = "liggghts";
   hello.program_version = "3.8.0 + bplbm " BPLBM_VERSION;
+  if (const std::string units = update->unit_style; units != "si") hello.units = units;
   hello.step = update->dt;
   hello.solid_steps = static_cast<std::uint32_t>(substeps_);
   geometry(hello);

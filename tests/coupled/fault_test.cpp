@@ -195,6 +195,19 @@ TEST(Numerics, AFluidThatGetsTooFastStopsBothWithStepPlaceAndValue) {
               "liggghts | error | the fluid program stopped: interval"});
 }
 
+TEST(ScriptError, AVariableThatNothingDefinesIsNamed) {
+  SettlingDisc scene;
+  scene.change_script("peratomtypepair 1 ${contact_stiffness}", "peratomtypepair 1 ${stiffness}");
+  expect_end(scene.run(), 1,
+             {"Substitution for illegal variable", "nothing defines ${stiffness} (in.liggghts:"});
+}
+
+TEST(ScriptError, OtherUnitsAreRefused) {
+  SettlingDisc scene;
+  scene.change_script("units            si", "units            cgs");
+  expect_end(scene.run(), 2, {"fluid and solid disagree", "units: fluid SI, solid cgs"});
+}
+
 TEST(Numerics, AFluidThatGetsFastIsWarnedOfOnce) {
   SettlingDisc scene;
   scene.change_scene("velocity_scale = 0.06", "velocity_scale = 0.04");  // 0.14 C in the end

@@ -59,13 +59,18 @@ void run(std::vector<std::string> arguments, protocol::SolidSession& session, MP
 
 // LAMMPS ends the process itself after an error: all ranks finalise, or one aborts. The fluid would
 // wait for it; these two stand before those of MPI.
+[[noreturn]] static void end_with_error(bool lonely) {
+  const std::string said = protocol::last_error_line({log_file});
+  protocol::end_with_engine(
+      said.empty() ? "LAMMPS stopped with an error; see its output, or give it -log FILE" : said,
+      channel.get(), lonely);
+}
 extern "C" int MPI_Finalize() {
-  if (!finalize_is_meant)
-    protocol::end_with_engine("LAMMPS", log_file, channel.get(), /*lonely=*/false);
+  if (!finalize_is_meant) end_with_error(/*lonely=*/false);
   return PMPI_Finalize();
 }
 extern "C" int MPI_Abort(MPI_Comm, int) {
-  protocol::end_with_engine("LAMMPS", log_file, channel.get(), /*lonely=*/true);
+  end_with_error(/*lonely=*/true);
 }
 
 int main(int argc, char** argv) {
