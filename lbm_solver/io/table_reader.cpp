@@ -74,6 +74,7 @@ void TableReader::fail(const std::string& key, const std::string& problem,
 
 const toml::node* TableReader::find(const std::string& key) {
   asked_.insert(key);
+  known_.insert(key);
   return table_.get(key);
 }
 
@@ -269,7 +270,7 @@ void TableReader::finish() const {
     const std::string name(key.str());
     if (asked_.contains(name)) continue;
     throw InputError(where(&node, name) + " is no known key",
-                     fmt::format("known here: {}", fmt::join(asked_, ", ")));
+                     fmt::format("known here: {}", fmt::join(known_, ", ")));
   }
 }
 

@@ -29,7 +29,10 @@ class TableReader {
  public:
   TableReader(const toml::table& table, std::string path, std::string file);
 
-  bool has(const std::string& key) const { return table_.contains(key); }
+  bool has(const std::string& key) {
+    known_.insert(key);
+    return table_.contains(key);
+  }
   TableReader table(const std::string& key);
   /// A table that may be absent: then an empty one.
   TableReader optional_table(const std::string& key);
@@ -80,7 +83,8 @@ class TableReader {
 
   const toml::table& table_;
   std::string path_, file_;
-  std::set<std::string> asked_;
+  std::set<std::string> asked_;  // keys whose values were wanted
+  std::set<std::string> known_;  // also those that were only looked for
 };
 
 }  // namespace lbm

@@ -114,10 +114,11 @@ void FixBondBreaks::check_counts() {
   if (all[0] != all[1] + all[2])
     error->fix_error(
         FLERR, this,
-        fmt::format("step {}: {} bonds were created, but {} are intact and {} broken: {} were lost "
-                    "without breaking (did a particle leave the box?)",
-                    static_cast<long>(update->ntimestep), all[0], all[1], all[2],
-                    all[0] - all[1] - all[2])
+        fmt::format(
+            "step {}: {} bonds were created, but {} are intact and {} broken: {} were lost "
+            "without breaking (did a particle leave the box, or move on by more than the skin of "
+            "the neighbour list in a step?)",
+            static_cast<long>(update->ntimestep), all[0], all[1], all[2], all[0] - all[1] - all[2])
             .c_str());
 }
 

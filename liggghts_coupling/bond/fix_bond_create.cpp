@@ -6,12 +6,16 @@
 #include <fmt/format.h>
 #include <force.h>
 #include <pair.h>
+#include <update.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "liggghts_coupling/bond/bond_book.h"
+#include "liggghts_coupling/bond/pair_property.h"
 
 namespace dem {
 namespace {
@@ -88,6 +92,12 @@ void FixBondCreate::setup(int) {
   if (done_) return;
   done_ = true;
   BondBook& book = BondBook::instance();
+  int ignored = book.request ? 1 : 0;  // the bonds' pair styles take the wish
+  MPI_Allreduce(MPI_IN_PLACE, &ignored, 1, MPI_INT, MPI_MIN, world);
+  if (ignored)
+    error->fix_error(FLERR, this,
+                     "needs pair_style gran model bond/contact or bond/parallel; this one makes no "
+                     "bonds");
   long all = 0;
   MPI_Allreduce(&book.created, &all, 1, MPI_LONG, MPI_SUM, world);
   if (wanted_ >= 0 && all != wanted_)
@@ -97,10 +107,35 @@ void FixBondCreate::setup(int) {
                                  wanted_ - all, wanted_)
                          .c_str());
   if (comm->me == 0) {
+    if (all == 0)
+      fmt::print(stderr,
+                 "liggghts | warning | fix bond/create {} has made no bonds: no two particles are "
+                 "within its gap; raise it, or let the packing come to rest before\n",
+                 id);
     const std::string text = fmt::format("bonds created: {}\n", all);
     for (FILE* out : {screen, logfile})
       if (out) std::fputs(text.c_str(), out);
   }
+  if (all > 0) warn_of_long_step();
+}
+
+/// Bonds that are too stiff for the step break by themselves: paper A Eq 8, without a safety
+/// factor.
+void FixBondCreate::warn_of_long_step() const {
+  double lightest = std::numeric_limits<double>::max(), stiffest = 0.0;
+  for (int i = 0; i < atom->nlocal; ++i) lightest = std::min(lightest, atom->rmass[i]);
+  MPI_Allreduce(MPI_IN_PLACE, &lightest, 1, MPI_DOUBLE, MPI_MIN, world);
+  for (const char* name : {"bondNormalStiffness", "bondShearStiffness"})
+    if (const double* const* values = pair_property(*lmp, name, style))
+      for (int a = 0; a < atom->ntypes; ++a)
+        for (int b = 0; b < atom->ntypes; ++b) stiffest = std::max(stiffest, values[a][b]);
+  const double limit = std::sqrt(lightest / stiffest);
+  if (comm->me == 0 && update->dt > limit)
+    fmt::print(stderr,
+               "liggghts | warning | fix bond/create {}: the time step of {:.3g} s is above √(m/k) "
+               "= {:.3g} s of the stiffest bond, which will break by itself; take more substeps, "
+               "and fix bond/timestep to be sure\n",
+               id, update->dt, limit);
 }
 
 void FixBondCreate::write_restart(FILE* file) {

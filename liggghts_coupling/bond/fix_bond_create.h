@@ -30,6 +30,7 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
 
  private:
   std::set<std::pair<long, long>> read_list(const char* path);
+  void warn_of_long_step() const;
   bool done_ = false;  ///< bonds were made, in this run or before the restart
   long wanted_ = -1;   ///< pairs of the list
 };

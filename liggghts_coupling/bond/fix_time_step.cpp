@@ -5,10 +5,8 @@
 #include <comm.h>
 #include <domain.h>
 #include <error.h>
-#include <fix_property_global.h>
 #include <fmt/format.h>
 #include <force.h>
-#include <modify.h>
 #include <update.h>
 
 #include <algorithm>
@@ -16,6 +14,7 @@
 #include <limits>
 #include <string>
 
+#include "liggghts_coupling/bond/pair_property.h"
 #include "liggghts_coupling/bond/time_step_limits.h"
 
 namespace dem {
@@ -56,13 +55,6 @@ FixTimeStep::Lightest FixTimeStep::lightest(int type) const {
   return {all[0], shape * all[0] * all[1] * all[1], all[1]};
 }
 
-/// Values [type][type] from 0 of a property, or null where the script has none.
-const double* const* FixTimeStep::values(const char* name) const {
-  auto* fix = dynamic_cast<LAMMPS_NS::FixPropertyGlobal*>(modify->find_fix_property(
-      name, "property/global", "peratomtypepair", atom->ntypes, 0, style, false));
-  return fix ? fix->get_array() : nullptr;
-}
-
 void FixTimeStep::say(const std::string& text) const {
   if (comm->me != 0) return;
   for (FILE* out : {screen, logfile})
@@ -82,6 +74,7 @@ double FixTimeStep::rayleigh() const {
 }
 
 void FixTimeStep::init() {
+  const auto values = [this](const char* name) { return pair_property(*lmp, name, style); };
   const double* const* contact = values("contactNormalStiffness");
   const double* const* shear = values("contactShearStiffness");
   const double* const* damping = values("contactDampingRatio");

@@ -29,7 +29,6 @@ class FixTimeStep final : public LAMMPS_NS::Fix {
     double mass, inertia, radius;
   };
   Lightest lightest(int type) const;
-  const double* const* values(const char* name) const;
   void say(const std::string& text) const;
   double rayleigh() const;
 

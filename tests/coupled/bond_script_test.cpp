@@ -46,6 +46,13 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"stretch", "bondTensileStrength peratomtypepair 1 20",
                 "bondTensileStrength peratomtypepair 1 2e4", "Raise bondNormalStiffness or lower"},
         Refused{"newton", "newton off", "newton on", "newton pair off"},
+        Refused{"pair", "pair_style gran model bond/contact ledger on",
+                "fix kn all property/global kn peratomtypepair 1 1e5\n"
+                "fix kt all property/global kt peratomtypepair 1 1e5\n"
+                "fix gn all property/global gamman peratomtypepair 1 1\n"
+                "fix gt all property/global gammat peratomtypepair 1 1\n"
+                "pair_style gran model hooke/stiffness",
+                "this one makes no bonds"},
         Refused{"map", "atom_modify map array", "", "needs 'atom_modify map array'"},
         Refused{"ghosts", "communicate single vel yes", "", "requires ghost atoms store velocity"},
         Refused{"exponent", "ledger on", "exponent 2", "exponent is 1 (linear) or 1.5 (Hertz)"},
@@ -54,6 +61,18 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"file", "every 100 file breaks.csv", "every 100 file no/such/folder.csv",
                 "cannot be written"}),
     [](const auto& info) { return info.param.name; });
+
+TEST(BondCreate, WarnsWhereThereAreNoneOrTheStepIsTooLong) {
+  Script script;
+  const std::string none = "has made no bonds", step = "which will break by itself";
+  auto job = script.run(pulled_pair({}, "0 0 0"));
+  EXPECT_EQ(job.output.find(none), std::string::npos) << job.output;
+  EXPECT_EQ(job.output.find(step), std::string::npos) << job.output;
+  job = script.run(replaced(pulled_pair({}, "0 0 0"), disc(0.55, 0.5), disc(0.56, 0.5)));
+  EXPECT_NE(job.output.find(none), std::string::npos) << job.output;
+  job = script.run(replaced(pulled_pair({}, "0 0 0"), "timestep 1e-5", "timestep 1e-2"));
+  EXPECT_NE(job.output.find(step), std::string::npos) << job.output;
+}
 
 TEST(BondRefusal, OfABoxInWhichAPairMeetsThroughBothSides) {
   Script script;
