@@ -78,6 +78,11 @@ def hard_cases(full):
                        [merged(light, {"coupling": {"virtual_mass": 0.0}})], lambda runs: (None, "bounded"), solids=False)
     yield Hard("free disc, τ = 1.5", "bounded", "couette_disc",
                [{"numerics": {"time_step": 0.00333}, "run": {"end_time": 10.0}}])
+    for tau, step, ratio in ((1.5, 0.00333, 1.0), (1.5, 0.00333, 1.5), (1.5, 0.00333, 1.9), (1.0, 0.00167, 1.0)) if full else ():
+        viscous = {"numerics": {"time_step": step}, "particles": {"density": 1000.0 * ratio},
+                   "coupling": {"virtual_mass": 0.0}, "run": {"end_time": 10.0}}
+        yield Hard(f"free disc, τ = {tau}, ρ_s/ρ_f {ratio:g}, no virtual mass", "told: what the default is for",
+                   "couette_disc", [viscous], lambda runs: (None, "bounded"), solids=False)
     yield Hard("pressure jump of 600 kPa into a packing", "overshoot < 10 %", "hydraulic_fracture",
                [{"output": {"fields_every": 2.5e-4, "probe_every": 1e-3}, "run": {"end_time": 0.003}}], overshoot)
     yield Hard("channel between pressures, Δρ/ρ 0.03, 0.01, 0.003", "error told; the step's rule allows 0.03", "poiseuille",
