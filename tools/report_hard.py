@@ -41,6 +41,7 @@ STEPS = (
     Steps("discs that come late", "momentum to 1e-12; the way of one that was there to 1e-10 cells",
           at_most(inserted=1e-12, late=1e-10)),
     Steps("discs that go, and none at all", "momentum to 1e-12; a fluid without solids to 1e-13", at_most(removed=1e-12, none=1e-13)),
+    Steps("a disc on a side, edge or corner", "solid fractions of one inside; its loads to 1e-13", at_most(map=0.0, loads=1e-13)),
     Steps("a disc that begins on a side, edge or corner", "the way of one inside to 1e-10 cells in 1000 steps", at_most(face=1e-10)),
     Steps("an array carried at 0.02, 0.05, 0.1 C", "drag drift ≤ 1 %; of BGK, TRT 1.5 % at 0.05, 6 % at 0.1", carried),
 )

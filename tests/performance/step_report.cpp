@@ -11,8 +11,11 @@
 /// late       way of a disc that comes 50 steps late, against one that was there, largest
 /// removed    largest rest of momentum while they go, one after the other, and after that
 /// none       populations without any disc, against those of a fluid without solids, largest
+/// map        solid fractions around a disc that lies on a side, edge or corner of the box, against
+///            those around one in the middle, largest difference; both on multiples of 2⁻¹⁰ cells
+/// loads      loads on it in each of twenty steps, in the same way
 /// face       way of a disc whose centre begins exactly on a side, edge or corner of the box,
-///            against one in the middle, 1000 steps, largest; both on multiples of 2⁻¹⁰ cells
+///            against one in the middle, 1000 steps, largest
 /// collision  what "auto" takes
 /// drift      drag on an array carried at 0.02, 0.05 and 0.1 cells a step, over that at rest, − 1
 #include <fmt/format.h>
@@ -74,6 +77,10 @@ double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b, 
   return largest;
 }
 
+const Vec3 kNearTheMiddle(24.0 + 77.0 / 1024, 22.0 + 301.0 / 1024);
+const std::vector<Vec3> kToTheSides{{-24.0, 0.0}, {24.0, 0.0},    {0.0, -22.0},
+                                    {0.0, 22.0},  {-24.0, -22.0}, {24.0, 22.0}};
+
 class Cases {
  public:
   explicit Cases(const NumericsScene& numerics) : numerics_(numerics) {}
@@ -124,10 +131,38 @@ class Cases {
     const Vec3 inside(24.0, 22.0);
     const test::FreeRun reference = fall(inside, 0, 1000);
     double largest = 0.0;
-    for (const Vec3& shift : {Vec3(-24.0, 0.0), Vec3(24.0, 0.0), Vec3(0.0, -22.0), Vec3(0.0, 22.0),
-                              Vec3(-24.0, -22.0), Vec3(24.0, 22.0)})
+    for (const Vec3& shift : kToTheSides)
       keep_largest(largest,
                    largest_distance(fall(inside + shift, 0, 1000).place, reference.place, shift));
+    return largest;
+  }
+
+  double map() const {
+    double largest = 0.0;
+    const Fluid reference = around(kNearTheMiddle, 1);
+    for (const Vec3& shift : kToTheSides) {
+      const Fluid fluid = around(kNearTheMiddle + shift, 1);
+      for (int y = 0; y < 44; ++y)
+        for (int x = 0; x < 48; ++x) {
+          const auto sx = static_cast<int>(x + shift.x() + 48) % 48;
+          const auto sy = static_cast<int>(y + shift.y() + 44) % 44;
+          keep_largest(largest,
+                       std::abs(fluid.solid_fraction(sx, sy) - reference.solid_fraction(x, y)));
+        }
+    }
+    return largest;
+  }
+
+  double loads() const {
+    double largest = 0.0;
+    for (int steps = 1; steps <= 20; ++steps) {
+      const BodyLoad reference = around(kNearTheMiddle, steps).loads()[0];
+      for (const Vec3& shift : kToTheSides) {
+        const BodyLoad load = around(kNearTheMiddle + shift, steps).loads()[0];
+        keep_largest(largest, (load.force - reference.force).norm());
+        keep_largest(largest, (load.torque - reference.torque).norm());
+      }
+    }
     return largest;
   }
 
@@ -215,6 +250,19 @@ class Cases {
     return largest;
   }
 
+  /// A fluid after some steps of a disc that moves through it.
+  Fluid around(const Vec3& start, int steps) const {
+    const Scene scene = scene_of(numerics_, 48, 44, 0.7);
+    Fluid fluid = make_fluid(scene, make_plan(scene));
+    std::vector<Body> disc{{1, start, 5.0, {0.0625, -0.03125}, 0.002}};
+    for (int step = 0; step < steps; ++step) {
+      fluid.place(disc);
+      fluid.step();
+      test::move(disc);
+    }
+    return fluid;
+  }
+
   /// A disc that falls from rest in a fluid at rest.
   test::FreeRun fall(const Vec3& start, int inserted, int steps) const {
     Scene scene = scene_of(numerics_, 48, 44, 0.7);
@@ -250,11 +298,18 @@ int main(int argc, char** argv) {
   if (const auto code = protocol::read_command_line(app, "step_report", argc, argv)) return *code;
   try {
     const Cases cases(numerics);
-    const nlohmann::json values{{"collision", cases.collision()}, {"momentum", cases.momentum()},
-                                {"shared", cases.shared()},       {"order", cases.order()},
-                                {"inserted", cases.inserted()},   {"late", cases.late()},
-                                {"removed", cases.removed()},     {"none", cases.none()},
-                                {"face", cases.face()},           {"drift", cases.drift()}};
+    const nlohmann::json values{{"collision", cases.collision()},
+                                {"momentum", cases.momentum()},
+                                {"shared", cases.shared()},
+                                {"order", cases.order()},
+                                {"inserted", cases.inserted()},
+                                {"late", cases.late()},
+                                {"removed", cases.removed()},
+                                {"none", cases.none()},
+                                {"map", cases.map()},
+                                {"loads", cases.loads()},
+                                {"face", cases.face()},
+                                {"drift", cases.drift()}};
     fmt::print("{}\n", values.dump());
     return protocol::kOk;
   } catch (const std::exception& error) {  // InputError, or a name that is not known
