@@ -211,7 +211,7 @@ def stability_case(args):
     return text_of_stability(rows)
 
 
-OTHERS = {"fractions": lambda args: text_of_fractions(kept("fractions", fractions(args.again))),
+OTHERS = {"fractions": lambda args: text_of_fractions(fractions(args.again)),
           "stability": stability_case,
           "needs": lambda args: text_of_needs(kept("needs", needs(args.again)))}
 

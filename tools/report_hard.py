@@ -17,7 +17,7 @@ class Hard:
 
     name: str
     asked: str
-    scene: str
+    scene: str  # of cases/, or the path of another folder
     runs: list  # overlays
     judge: Callable = lambda runs: (True, "")  # of the runs -> whether it is met, value; None: told, not judged
     files: tuple = ()

@@ -134,7 +134,7 @@ void check_speed(const Scene& s, Plan& plan) {
         fmt::format("{}: {} makes {:.4g} m/s, {:.3g} of C = Δx/Δt; a run stops at {}", s.file, what,
                     speed, speed / plan.lattice_speed, kStopSpeed),
         fmt::format("take velocity_scale = {:.4g}, the largest speed to expect", speed));
-  if (speed > 1.01 * s.fluid.velocity_scale && speed > kWarnSpeed * plan.lattice_speed)
+  if (speed > 1.001 * s.fluid.velocity_scale && speed > kWarnSpeed * plan.lattice_speed)
     plan.warnings.push_back(
         fmt::format("{} makes {:.4g} m/s, more than velocity_scale = {:.4g}: compressibility error",
                     what, speed, s.fluid.velocity_scale));

@@ -13,8 +13,7 @@ namespace dem {
 /// interface):
 /// - calls on MPI_COMM_WORLD from VTK dumps and timing output use `local` instead;
 /// - an MPI_Finalize or MPI_Abort that we did not ask for is LIGGGHTS ending with an error: the
-/// fluid
-///   is told why, and the job is aborted.
+///   fluid is told why, and the job is aborted.
 /// @param reason  of such an end, in words
 void guard_mpi(MPI_Comm local, std::function<std::string()> reason);
 

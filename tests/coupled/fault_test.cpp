@@ -57,6 +57,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "coupling interval: fluid"},
         Mismatch{"periodicity", "${boundary_x} ${boundary_y}", "p ${boundary_y}",
                  "boundary x: fluid not periodic, solid periodic"},
+        Mismatch{"units", "units            si", "units            cgs",
+                 "units: fluid SI, solid cgs"},
         Mismatch{"gravity", "gravity ${gravity} vector", "gravity 9.81 vector",
                  "gravity: fluid (0, -9.8, 0)"},
         Mismatch{"depth", "${z_lo} ${z_hi}", "-0.25 0.25", "depth: fluid 1 m, solid 0.5 m"},
@@ -153,6 +155,13 @@ TEST(ScriptError, DuringTheRun) {
   expect_end(scene.run(), 1, {"lbm | error | the solid program stopped: ERROR: Lost atoms"});
 }
 
+TEST(ScriptError, AVariableThatNothingDefinesIsNamed) {
+  SettlingDisc scene;
+  scene.change_script("peratomtypepair 1 ${contact_stiffness}", "peratomtypepair 1 ${stiffness}");
+  expect_end(scene.run(), 1,
+             {"Substitution for illegal variable", "nothing defines ${stiffness} (in.liggghts:"});
+}
+
 TEST(Numerics, AStateThatIsNotFiniteIsNamed) {
   SettlingDisc scene;
   scene.change_script("run              ${solid_steps_total}",
@@ -193,33 +202,6 @@ TEST(Numerics, AFluidThatGetsTooFastStopsBothWithStepPlaceAndValue) {
   expect_end(scene.run(), 3,
              {"lbm | error | interval ", "moves at ", "raise fluid.velocity_scale",
               "liggghts | error | the fluid program stopped: interval"});
-}
-
-TEST(ScriptError, AVariableThatNothingDefinesIsNamed) {
-  SettlingDisc scene;
-  scene.change_script("peratomtypepair 1 ${contact_stiffness}", "peratomtypepair 1 ${stiffness}");
-  expect_end(scene.run(), 1,
-             {"Substitution for illegal variable", "nothing defines ${stiffness} (in.liggghts:"});
-}
-
-TEST(ScriptError, OtherUnitsAreRefused) {
-  SettlingDisc scene;
-  scene.change_script("units            si", "units            cgs");
-  expect_end(scene.run(), 2, {"fluid and solid disagree", "units: fluid SI, solid cgs"});
-}
-
-TEST(Numerics, AFluidThatGetsFastIsWarnedOfOnce) {
-  SettlingDisc scene;
-  scene.change_scene("velocity_scale = 0.06", "velocity_scale = 0.04");  // 0.14 C in the end
-  scene.change_scene("end_time = 0.04", "end_time = 0.4");
-  const auto job = scene.run();
-  EXPECT_EQ(job.exit_code, 0) << job.output;
-  const std::string warning =
-      "C, above 0.1: compressibility error; a run stops at 0.2; raise "
-      "fluid.velocity_scale (now 0.04 m/s)";
-  const std::size_t first = job.output.find(warning);
-  ASSERT_NE(first, std::string::npos) << job.output;
-  EXPECT_EQ(job.output.find(warning, first + 1), std::string::npos) << job.output;
 }
 
 struct Damage {

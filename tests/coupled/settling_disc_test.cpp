@@ -52,6 +52,20 @@ TEST(SettlingDiscCoupled, OneToFiftySubstepsFallAlike) {
   for (const double speed : speeds) EXPECT_NEAR(speed / speeds[0], 1.0, 0.01);
 }
 
+TEST(SettlingDiscCoupled, IsWarnedOfOnceWhenItGetsFast) {
+  SettlingDisc scene;
+  scene.change_scene("velocity_scale = 0.06", "velocity_scale = 0.04");  // 0.14 C in the end
+  scene.change_scene("end_time = 0.04", "end_time = 0.4");
+  const auto job = scene.run();
+  expect_success(job);
+  const std::string warning =
+      "C, above 0.1: compressibility error; a run stops at 0.2; raise "
+      "fluid.velocity_scale (now 0.04 m/s)";
+  const std::size_t first = job.output.find(warning);
+  ASSERT_NE(first, std::string::npos) << job.output;
+  EXPECT_EQ(job.output.find(warning, first + 1), std::string::npos) << job.output;
+}
+
 TEST(SettlingDiscCoupled, SameTrajectoryWithOneTwoAndThreeSolidRanks) {
   SettlingDisc scene;
   // started off centre and near a border of the rank grid, so that it migrates and drifts sideways

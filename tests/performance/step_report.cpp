@@ -21,12 +21,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
+#include <vector>
 
-#include "lbm_solver/base/errors.h"
 #include "lbm_solver/solver/plan.h"
 #include "protocol/command_line.h"
 #include "tests/support/free_disc.h"

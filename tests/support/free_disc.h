@@ -3,6 +3,7 @@
 #pragma once
 
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "lbm_solver/coupling/particles.h"
