@@ -115,15 +115,15 @@ template <class... Packs>
 #endif
 }
 
-/// Three numbers, of which each lane of a pack takes one.
+/// Four numbers, of which each lane of a pack takes one.
 class alignas(64) LaneChoice {
  public:
   LaneChoice() = default;
-  LaneChoice(double zero, double one, double two) : at_{zero, one, two} {}
+  LaneChoice(double zero, double one, double two, double three) : at_{zero, one, two, three} {}
 
 #if defined(__AVX512DQ__)
   using Which = __m512i;
-  /// By whole numbers 0, 1, 2; from each lane of v the fraction is cut off.
+  /// By whole numbers 0 … 3; from each lane of v the fraction is cut off.
   [[gnu::always_inline]] static Which which(const Pack& v) {
     return _mm512_cvttpd_epi64(static_cast<__m512d>(v));
   }
@@ -132,15 +132,16 @@ class alignas(64) LaneChoice {
   }
 #else
   struct Which {
-    Pack::mask_type one, two;
+    Pack::mask_type one, two, three;
   };
   [[gnu::always_inline]] static Which which(const Pack& v) {
-    return {v >= Pack(1.0), v >= Pack(2.0)};
+    return {v >= Pack(1.0), v >= Pack(2.0), v >= Pack(3.0)};
   }
   [[gnu::always_inline]] Pack operator()(const Which& which) const {
     Pack value(at_[0]);
     where(which.one, value) = Pack(at_[1]);
     where(which.two, value) = Pack(at_[2]);
+    where(which.three, value) = Pack(at_[3]);
     return value;
   }
 #endif

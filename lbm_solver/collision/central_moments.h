@@ -16,7 +16,7 @@ template <class L, class Turbulence, class Force>
 class CentralMoments {
  public:
   using Set = L;
-  static constexpr bool constant_rates = false;  ///< see TwoRates
+  static constexpr bool constant_rates = false, fixed_magic = false;  ///< see TwoRates
   explicit CentralMoments(const CollisionParameters& p) : turbulence_(p), force_(p) {}
 
   static constexpr bool turbulent = Turbulence::on, forced = Force::on;

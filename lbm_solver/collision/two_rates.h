@@ -9,6 +9,7 @@ namespace lbm {
 
 /// BGK: both are equal.
 struct EqualRates {
+  static constexpr bool fixed_magic = false;
   explicit EqualRates(const CollisionParameters&) {}
   template <class V>
   [[gnu::always_inline]] V odd_tau(const V& tau) const {
@@ -19,6 +20,7 @@ struct EqualRates {
 /// TRT [Ginzburg 2008]: Λ = (τ⁺ - ½)(τ⁻ - ½) is kept. With Λ = 3/16 a half-way wall lies exactly
 /// half-way at every viscosity.
 struct MagicRate {
+  static constexpr bool fixed_magic = true;
   explicit MagicRate(const CollisionParameters& p) : magic(p.magic) {}
   template <class V>
   [[gnu::always_inline]] V odd_tau(const V& tau) const {
@@ -43,6 +45,8 @@ class TwoRates {
 
   /// The rates are the same in every cell, and nothing is added to the relaxation.
   static constexpr bool constant_rates = !Turbulence::on && !Force::on;
+  /// Λ is the same in every cell: what a covered cell by resistance needs.
+  static constexpr bool fixed_magic = OddRule::fixed_magic;
   double even_rate() const { return even_rate_; }
   double odd_rate() const { return odd_rate_; }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 
 #include "lbm_solver/base/simd.h"
@@ -33,15 +32,15 @@ struct alignas(64) CoverBlock {
 };
 
 /// Cells that are solid whole and in a solid's core, or in a wall.
-inline constexpr double kCore = 2.0, kWall = -1.0;
+inline constexpr double kCore = 2.0, kWall = 3.0;
 /// A cell covered to round-off is covered whole.
 inline constexpr double kWhole = 1.0 - 1e-12;
 
 /// Solid fraction of cells, of what a block or several together have in `cover`.
 template <class V>
 [[gnu::always_inline]] inline V fraction_of(const V& cover) {
-  using std::abs, std::min;
-  return min(abs(cover), V(1.0));
+  using std::min;
+  return min(cover, V(1.0));
 }
 
 /// How a solid moves.

@@ -14,9 +14,10 @@ static_assert(std::is_nothrow_move_constructible_v<Footprint>);
 
 }  // namespace
 
-CoverMap::CoverMap(const Domain& domain, const Block& cells)
+CoverMap::CoverMap(const Domain& domain, const Block& cells, const RadiusShift& shift)
     : domain_(domain),
       cells_(cells),
+      shift_(shift),
       d_(domain.dimension()),
       blocks_per_row_((cells.size[0] + kPackWidth - 1) / kPackWidth),
       index_(static_cast<std::size_t>(blocks_per_row_) * cells.size[1] * cells.size[2] + kRowsEnd),
@@ -32,7 +33,9 @@ void CoverMap::update(std::span<const Body> bodies) {
 #pragma omp parallel for schedule(static) reduction(|| : other_spans) if (n >= kManyBodies)
   for (std::ptrdiff_t d = 0; d < n; ++d) {
     motions_[d + 1] = {bodies[d].velocity, bodies[d].spin};
-    change[d] = footprints_[d].look(bodies[d], domain_, cells_);
+    Body mapped = bodies[d];
+    mapped.radius = shift_.radius(mapped.radius, mapped.hollow);
+    change[d] = footprints_[d].look(mapped, domain_, cells_);
     if (change[d] == Footprint::Change::Fractions) footprints_[d].write();
     other_spans = other_spans || change[d] == Footprint::Change::Spans;
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lbm_solver/immersed/footprint.h"
+#include "lbm_solver/immersed/radius_shift.h"
 
 namespace lbm {
 
@@ -13,7 +14,7 @@ namespace lbm {
 /// that holds none is pure fluid and is swept without asking further.
 class CoverMap {
  public:
-  CoverMap(const Domain& domain, const Block& cells);
+  CoverMap(const Domain& domain, const Block& cells, const RadiusShift& shift = {});
   explicit CoverMap(const Domain& domain) : CoverMap(domain, Block::whole(domain)) {}
   CoverMap(const CoverMap&) = delete;  // blocks point at each other
   CoverMap& operator=(const CoverMap&) = delete;
@@ -78,6 +79,7 @@ class CoverMap {
 
   Domain domain_;
   Block cells_;
+  RadiusShift shift_;  // of bodies, not of walls
   int d_;
   int blocks_per_row_;
   std::vector<CoverBlock*> index_;     // [layer][row][block], then kRowsEnd nulls

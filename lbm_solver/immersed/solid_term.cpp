@@ -41,33 +41,46 @@ CoveredCollision::Factors CoveredCollision::factors(const SolidTerm& term,
                                                     SolidTerm::Parts SolidTerm::Halves::*half,
                                                     const SolidTerm::Parts& own) {
   const SolidTerm::Parts &surface = term.surface.*half, &whole = term.whole.*half,
-                         &core = term.core.*half;
+                         &core = term.core.*half, &wall = term.wall.*half;
   // f + Ω^s has one f more than Ω^s; halves are of sums and differences.
   const double kept = own.f - 1.0;
-  return {
-      {0.5 * own.f, {0.5 * (surface.f - kept), 0.5 * (whole.f - kept), 0.5 * (core.f - kept)}},
-      {own.fluid, {surface.fluid - own.fluid, whole.fluid - own.fluid, core.fluid - own.fluid}},
-      {own.solid, {surface.solid - own.solid, whole.solid - own.solid, core.solid - own.solid}}};
+  const auto choice = [&](double part, double SolidTerm::Parts::*of, double scale) {
+    return LaneChoice(scale * (surface.*of - part), scale * (whole.*of - part),
+                      scale * (core.*of - part), scale * (wall.*of - part));
+  };
+  return {{0.5 * own.f, choice(kept, &SolidTerm::Parts::f, 0.5)},
+          {own.fluid, choice(own.fluid, &SolidTerm::Parts::fluid, 1.0)},
+          {own.solid, choice(own.solid, &SolidTerm::Parts::solid, 1.0)}};
 }
 
 SolidTerm solid_term(const std::string& name, double tau) {
-  if (name == "noble_torczynski") return {kNobleTorczynski, kNobleTorczynski, kNobleTorczynski};
-  if (name == "holdych") return {kHoldych, kHoldych, kHoldych};
-  if (name == "superposition") return {superposition(tau), superposition(tau), superposition(tau)};
+  const auto same = [](const SolidTerm::Halves& h) { return SolidTerm{h, h, h, kHoldych}; };
+  const auto layered = [](const SolidTerm::Halves& surface) {
+    return SolidTerm{surface, kBelowSurface, kEquilibrium, kHoldych};
+  };
+  if (name == "noble_torczynski") return same(kNobleTorczynski);
+  if (name == "holdych") return same(kHoldych);
+  if (name == "superposition") return same(superposition(tau));
   // Nearly as accurate as the term of their surface (only the first whole cells shape the flow
   // outside), but a whole cell takes the solid's velocity in one step, so that the force contains
   // exactly the inertia of the fluid inside, which the coupling gives back exactly; and the core
   // forgets, so that nothing rings there.
-  if (name == "layered_holdych") return {kHoldych, kBelowSurface, kEquilibrium};
-  if (name == "layered_noble_torczynski") return {kNobleTorczynski, kBelowSurface, kEquilibrium};
+  if (name == "layered_holdych") return layered(kHoldych);
+  if (name == "layered_noble_torczynski") return layered(kNobleTorczynski);
+  if (name == "resistance") return same(kHoldych);
+  if (name == "layered_resistance") return layered(kHoldych);
   std::string known;
   for (const std::string& n : known_solid_terms()) known += " " + n;
   throw std::invalid_argument("no solid term '" + name + "'; known:" + known);
 }
 
+bool by_resistance(const std::string& name) {
+  return name == "resistance" || name == "layered_resistance";
+}
+
 std::vector<std::string> known_solid_terms() {
-  return {"noble_torczynski", "holdych", "superposition", "layered_holdych",
-          "layered_noble_torczynski"};
+  return {"resistance",    "layered_resistance", "noble_torczynski",        "holdych",
+          "superposition", "layered_holdych",    "layered_noble_torczynski"};
 }
 
 }  // namespace lbm

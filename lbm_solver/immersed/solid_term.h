@@ -24,15 +24,25 @@ struct SolidTerm {
   struct Halves {
     Parts even, odd;
   };
-  /// A cell that the solid covers in part, one that it covers whole, and one in its core, more than
-  /// two cells below the surface.
-  Halves surface, whole, core;
+  /// A cell that the solid covers in part, one that it covers whole, one in its core, more than two
+  /// cells below the surface, and one of a wall or block at rest: full bounce-back in every term.
+  Halves surface, whole, core, wall;
 };
 
-/// A term by its name. @param tau  relaxation time of the viscosity
+/// A term by its name. The two by resistance have no row for cells at the surface: their collision
+/// (ResistanceCollision) is not linear in a weight. @param tau  relaxation time of the viscosity
 /// @throws std::invalid_argument naming the known ones
 SolidTerm solid_term(const std::string& name, double tau);
+/// Whether a term's cells collide by resistance. Those need TRT.
+bool by_resistance(const std::string& name);
 std::vector<std::string> known_solid_terms();
+
+/// What the cover map knows of a cell.
+template <class L>
+struct CoveredCell {
+  Pack cover;          ///< as in CoverBlock
+  Vector<L, Pack> us;  ///< solid velocity at the cell centre, lattice units
+};
 
 /// f_i^eq(rho, u) times one factor plus f_i^eq(rho, u_s) times another, as halves of pairs, for the
 /// cost of about one equilibrium: only the second moments a u u + b u_s u_s and the momenta differ.
@@ -99,19 +109,12 @@ class CoveredCollision {
     }
   }
 
-  /// What the cover map knows of a cell.
-  template <class L>
-  struct Cell {
-    Pack cover;          ///< as in CoverBlock
-    Vector<L, Pack> us;  ///< solid velocity at the cell centre, lattice units
-  };
-
   /// @param f        populations [q] that arrived; overwritten
   /// @param collide  the operator of pure fluid
   /// @return the force on the solid, lattice units
   template <class L, class Collision>
   [[gnu::always_inline]] Vector<L, Pack> apply(Pack (&f)[L::Q], const Collision& collide,
-                                               const Cell<L>& cell) const {
+                                               const CoveredCell<L>& cell) const {
     using V = Pack;
     const Moments<L, V> m = moments<L>(f);
     const Vector<L, V> u = velocity<L>(m, NoForce<L>({}));
@@ -157,7 +160,7 @@ class CoveredCollision {
   /// (1-B) fluid + B solid
   struct Factor {
     double fluid = 0.0;
-    LaneChoice solid_less_fluid;  ///< of a cell at the surface, covered whole, in the core
+    LaneChoice solid_less_fluid;  ///< of a cell at the surface, covered whole, in the core, a wall
   };
   /// Of a sum of two opposite populations or their difference, and of the equilibria's halves.
   struct Factors {

@@ -23,8 +23,11 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
                   choice.force ? 0.5 * choice.parameters.force_y : 0.0,
                   choice.force ? 0.5 * choice.parameters.force_z : 0.0),
       halo_(ranks.alone() ? nullptr : std::make_unique<HaloExchange>(*ranks_, f_)),
-      cover_(choice.solid_term == "none" ? nullptr
-                                         : std::make_unique<CoverMap>(domain(), cells())) {
+      cover_(choice.solid_term == "none"
+                 ? nullptr
+                 : std::make_unique<CoverMap>(domain(), cells(),
+                                              radius_shift(choice.solid_term,
+                                                           domain().dimension()))) {
   if (lattice().D != domain().dimension())
     throw std::invalid_argument(std::string(lattice().name) + " for a box of " +
                                 std::to_string(domain().dimension()) + " dimensions");

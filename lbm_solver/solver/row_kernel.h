@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 
 #include "lbm_solver/base/simd.h"
-#include "lbm_solver/immersed/solid_term.h"
+#include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/kernel.h"
 
 namespace lbm {
@@ -79,9 +80,16 @@ class RowKernel final : public Kernel {
 
  public:
   explicit RowKernel(const KernelChoice& c) : collide_(c.parameters) {
-    if (c.solid_term != "none")
+    if (c.solid_term == "none") return;
+    if (!by_resistance(c.solid_term)) {
       covered_.emplace(solid_term(c.solid_term, c.parameters.tau),
                        ImmersedWeight(c.weight, c.parameters.tau), collide_);
+      return;
+    }
+    if constexpr (Collision::fixed_magic)
+      resistance_.emplace(c.solid_term, c.parameters);
+    else
+      throw std::invalid_argument("solid term '" + c.solid_term + "' needs the collision trt");
   }
 
   void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover,
@@ -147,9 +155,18 @@ class RowKernel final : public Kernel {
   }
 
   template <class Access>
-  [[gnu::noinline]] void covered(const Row& row, int x, const CoverMap& cover, CoverBlock& block,
+  [[gnu::always_inline]] void covered(const Row& row, int x, const CoverMap& cover,
+                                      CoverBlock& block, const Access& lanes) const {
+    if constexpr (Collision::fixed_magic)
+      if (resistance_) return covered(*resistance_, row, x, cover, block, lanes);
+    covered(*covered_, row, x, cover, block, lanes);
+  }
+
+  template <class SolidCollision, class Access>
+  [[gnu::noinline]] void covered(const SolidCollision& solid, const Row& row, int x,
+                                 const CoverMap& cover, CoverBlock& block,
                                  const Access& lanes) const {
-    CoveredCollision::Cell<L> cell;
+    CoveredCell<L> cell;
     Pack scale;
     const bool shared = block.next;
     if (shared) [[unlikely]] {
@@ -163,7 +180,7 @@ class RowKernel final : public Kernel {
     }
     Pack f[L::Q];
     unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
-    const Vector<L, Pack> force = covered_->template apply<L>(f, collide_, cell);
+    const Vector<L, Pack> force = solid.template apply<L>(f, collide_, cell);
     unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
     if (shared) [[unlikely]]
       CoverMap::split<L::D>(block, scale, force.at);
@@ -173,6 +190,7 @@ class RowKernel final : public Kernel {
 
   Collision collide_;
   std::optional<CoveredCollision> covered_;
+  std::optional<ResistanceCollision> resistance_;
 };
 
 }  // namespace lbm

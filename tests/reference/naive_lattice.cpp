@@ -4,6 +4,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "lbm_solver/immersed/solid_term.h"
+
 namespace test {
 
 using lbm::opposite;
@@ -44,7 +46,9 @@ Cell NaiveLattice::solid_term(const Cell& f, const Cell& eq, double rho,
     const int o = opposite(i);
     const double noble_torczynski = f[o] - f[i] + solid[i] - eq[o];
     const double holdych = f[o] - f[i] + solid[i] - solid[o];
-    if (choice_.solid_term == "noble_torczynski")
+    if (c.wall)
+      omega[i] = f[o] - f[i];  // full bounce-back
+    else if (choice_.solid_term == "noble_torczynski")
       omega[i] = noble_torczynski;
     else if (choice_.solid_term == "holdych")
       omega[i] = holdych;
@@ -199,8 +203,65 @@ Cell NaiveLattice::fluid(const Cell& f) const {
   return out;
 }
 
+/// Covered cell by resistance, its odd half as a vector of all directions: momentum, ghost and the
+/// rest, each relaxed half-way implicitly with the matrix of lbm_solver/docs/resistance.md.
+Cell NaiveLattice::resistance(std::size_t cell) {
+  const Cell& f = f_[cell];
+  const auto& p = choice_.parameters;
+  const Macroscopic m = macroscopic(f);
+  const NaiveCover& cover = cover_[cell];
+  const double s = tau(f) - 0.5, t = 1.0 - cover.eps,
+               mu = (2.0 - 16.0 / 3 * p.magic) * t * t * t * t;
+  double share = 0.0;  // of momentum that populations along the axes carry
+  for (int i = 1; i < l_.Q; ++i)
+    if (c(i).squaredNorm() == 1.0) share += 3.0 * l_.w[i] * c(i).x() * c(i).x();
+  const double r = std::sqrt(share / (1.0 - share));
+  const Vec3 force = body_force(), w = m.j + 0.5 * force - m.rho * cover.velocity;
+  Vec3 z;
+  const auto psi = [&](int i) { return c(i).squaredNorm() == 1.0 ? 1.0 / r : -r; };
+  for (int i = 1; i < l_.Q; ++i) z += psi(i) * f[i] * c(i);
+  Eigen::Matrix2d exchange = Eigen::Vector2d(2.0, 2.0).asDiagonal();  // reflection
+  double others = 2.0, even_rate = 0.0;
+  if (cover.eps < 1.0 - 1e-12) {
+    Eigen::Matrix2d n;
+    n << 0.75 * t * t / cover.eps - 0.375 * mu, -0.375 * mu / r, -0.375 * mu / r,
+        0.375 * (t - 0.5 * mu);
+    exchange = (0.5 * Eigen::Matrix2d::Identity() + n / s).inverse();
+    others = 1.0 / (0.5 + n(1, 1) / s);
+    even_rate = 1.0 / tau(f);
+  } else if (!cover.wall && choice_.solid_term == "layered_resistance") {
+    others = cover.core ? 1.0 : 1.95;
+    exchange = Eigen::Vector2d(1.0, others).asDiagonal();
+  }
+  const bool at_surface = even_rate > 0.0;
+  const Vec3 lost = exchange(0, 0) * w + exchange(0, 1) * z;
+  const Vec3 ghost_lost = exchange(1, 0) * w + exchange(1, 1) * z;
+  const Vec3 u = (at_surface ? m.j + 0.5 * force - 0.5 * lost : m.j) / m.rho;
+  const Cell eq = equilibrium(m.rho, u), solid = equilibrium(m.rho, cover.velocity);
+  const Cell push = choice_.force ? source(u) : Cell{};
+  const bool reflects = cover.wall || choice_.solid_term == "resistance";
+  Cell out{};
+  for (int i = 0; i < l_.Q; ++i) {
+    const int o = opposite(i);
+    const double even = 0.5 * (f[i] + f[o]), odd = 0.5 * (f[i] - f[o]);
+    const double even_fluid = 0.5 * (eq[i] + eq[o]), even_solid = 0.5 * (solid[i] + solid[o]);
+    const double own = 3.0 * l_.w[i] * c(i).dot(m.j + psi(i) * z);  // momentum's and ghost's part
+    double after = even;
+    if (at_surface)
+      after +=
+          even_rate * (even_fluid - even) + (1.0 - 0.5 * even_rate) * 0.5 * (push[i] + push[o]);
+    else if (!reflects)
+      after = cover.core ? even_solid : 0.95 * (even - even_fluid + even_solid) + 0.05 * even_solid;
+    out[i] = after + (1.0 - others) * (odd - own) + own +
+             3.0 * l_.w[i] * c(i).dot(force - lost - psi(i) * ghost_lost);
+  }
+  force_[cell] = lost;
+  return out;
+}
+
 Cell NaiveLattice::collided(std::size_t cell) {
   const Cell& f = f_[cell];
+  if (cover_[cell].eps > 0.0 && lbm::by_resistance(choice_.solid_term)) return resistance(cell);
   const Macroscopic m = macroscopic(f);
   const NaiveCover& cover = cover_[cell];
   const Cell eq = equilibrium(m.rho, m.j / m.rho);  // without the body force

@@ -19,6 +19,7 @@ struct NaiveCover {
   double eps = 0.0;    ///< solid fraction; 0: pure fluid
   bool whole = false;  ///< covered whole
   bool core = false;   ///< deep inside
+  bool wall = false;   ///< of a wall or block at rest
   Vec3 velocity;
 };
 
@@ -61,6 +62,7 @@ class NaiveLattice {
   Cell fluid(const Cell& f) const;
   /// Relaxation time with the eddy viscosity.
   double tau(const Cell& f) const;
+  Cell resistance(std::size_t cell);
   Cell solid_term(const Cell& f, const Cell& eq_fluid, double rho, const NaiveCover& c) const;
 
   Domain domain_;

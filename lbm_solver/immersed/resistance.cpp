@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/immersed/resistance.h"
+
+#include "lbm_solver/immersed/radius_shift.h"
+
+namespace lbm {
+
+ResistanceCollision::ResistanceCollision(const std::string& term,
+                                         const CollisionParameters& parameters)
+    : tau_(parameters.tau), mu_zero_(2.0 - 16.0 / 3.0 * parameters.magic) {
+  const SolidTerm rows = solid_term(term, parameters.tau);
+  const auto choice = [&](auto&& of) {
+    return LaneChoice(of(rows.surface), of(rows.whole), of(rows.core), of(rows.wall));
+  };
+  momentum_ = choice([](const SolidTerm::Halves& h) { return h.odd.solid; });
+  ghost_ = choice([](const SolidTerm::Halves& h) { return -h.odd.f; });
+  even_ = choice([](const SolidTerm::Halves& h) { return -h.even.f; });
+  even_at_fluid_ = choice([](const SolidTerm::Halves& h) { return h.even.fluid; });
+  even_at_solid_ = choice([](const SolidTerm::Halves& h) { return h.even.solid; });
+}
+
+RadiusShift radius_shift(const std::string& solid_term, int dimension) {
+  if (!by_resistance(solid_term)) return {};
+  return dimension == 2 ? RadiusShift{0.0, 0.0} : RadiusShift{0.0, 0.0};
+}
+
+}  // namespace lbm
