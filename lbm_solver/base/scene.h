@@ -89,7 +89,7 @@ struct NumericsScene {
 struct ParticleScene {
   Range diameter;                            ///< [m]
   Range density;                             ///< [kg/m^3]
-  std::vector<double> hydraulic_ratio{1.0};  ///< radius that the fluid sees / radius, a type each
+  std::vector<double> hydraulic_ratio{1.0};  ///< radius that the flow sees / radius, a type each
   std::vector<Vec3> start;  ///< centres [m], offered to the script as particle_x …
   std::optional<double> contact_stiffness;       ///< [N/m]; bounds the solid's step
   std::map<std::string, std::string> variables;  ///< further names for the script
@@ -100,7 +100,7 @@ struct CouplingScene {
   std::optional<int> substeps;  ///< solid steps a coupling interval; absent: from the stiffness
   bool inner_inertia = true;    ///< correct for the inertia of the fluid inside a particle
   protocol::Buoyancy buoyancy = protocol::Buoyancy::ByFluid;
-  std::optional<double> virtual_mass;  ///< over displaced mass; absent: where particles are light
+  std::optional<double> virtual_mass;  ///< over covered fluid; absent: where particles are light
   double lubrication_range = 0.0;      ///< gap below which it acts [cells]; 0: off
   bool overlapped = false;             ///< both programs at once, loads one interval old
   double timeout = 300.0;              ///< longest wait for the solid [s]

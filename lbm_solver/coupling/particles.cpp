@@ -84,7 +84,7 @@ void Particles::arrive(std::span<const protocol::Particle> particles, double int
   sums_.assign(particles.size(), BodyLoad{});
 }
 
-double Particles::radius(std::size_t i) const {
+double Particles::covered_radius(std::size_t i) const {
   const auto type = static_cast<std::size_t>(std::max<std::int64_t>(1, particles_[i].shape.type));
   return particles_[i].shape.radius * hydraulic_ratio_[std::min(type, hydraulic_ratio_.size()) - 1];
 }
@@ -106,7 +106,7 @@ std::span<const Body> Particles::bodies(double elapsed) {
     const protocol::State& s = particles_[i].state;
     const Vec3 velocity = to_vec3(s.v), centre = to_vec3(s.x) + elapsed * velocity;
     Body& b = bodies_[i];
-    b = {s.id, units_.to_lattice_position(centre), radius(i) / units_.dx,
+    b = {s.id, units_.to_lattice_position(centre), covered_radius(i) / units_.dx,
          units_.to_lattice_velocity(velocity), units_.to_lattice_spin(to_vec3(s.omega))};
     if (!flat_) continue;
     b.centre.z() = b.velocity.z() = 0.0;
@@ -129,27 +129,33 @@ protocol::Load Particles::hydrodynamic(std::size_t i, int steps) const {
                       {force.x(), force.y(), force.z()},
                       {torque.x(), torque.y(), torque.z()}};
   if (!at_home(i)) return load;
-  const double fluid_mass = displaced_mass(i);
   const int last = flat_ ? 2 : 3;  // axes of a force
   if (coupling_.inner_inertia) {
-    const double fluid_inertia = fluid_mass * inner_inertia(i);
+    const double mass = covered_mass(i), inertia = mass * inertia_per_mass(i);
     const Motion& change = virtual_mass(i) > 0.0 ? mean_change_[i] : change_[i];
-    for (int k = 0; k < last; ++k) load.force[k] += fluid_mass * change.v[k] / interval_;
-    for (int k = flat_ ? 2 : 0; k < 3; ++k)
-      load.torque[k] += fluid_inertia * change.omega[k] / interval_;
+    for (int k = 0; k < last; ++k) load.force[k] += mass * change.v[k] / interval_;
+    for (int k = flat_ ? 2 : 0; k < 3; ++k) load.torque[k] += inertia * change.omega[k] / interval_;
   }
   if (coupling_.buoyancy == protocol::Buoyancy::ByFluid)
-    for (int k = 0; k < last; ++k) load.force[k] -= fluid_mass * fluid_.gravity[k];
+    for (int k = 0; k < last; ++k) load.force[k] -= displaced_mass(i) * fluid_.gravity[k];
   return load;
 }
 
-double Particles::displaced_mass(std::size_t i) const {
-  const double r = radius(i);
-  return fluid_.density * std::numbers::pi * r * r * (flat_ ? units_.depth : 4.0 / 3.0 * r);
+double Particles::fluid_mass(double radius) const {
+  return fluid_.density * std::numbers::pi * radius * radius *
+         (flat_ ? units_.depth : 4.0 / 3.0 * radius);
 }
 
-double Particles::inner_inertia(std::size_t i) const {
-  const double r = radius(i);
+double Particles::covered_mass(std::size_t i) const {
+  return fluid_mass(covered_radius(i));
+}
+
+double Particles::displaced_mass(std::size_t i) const {
+  return fluid_mass(particles_[i].shape.radius);
+}
+
+double Particles::inertia_per_mass(std::size_t i) const {
+  const double r = covered_radius(i);
   return (flat_ ? 0.5 : 0.4) * r * r;
 }
 
@@ -157,12 +163,12 @@ double Particles::virtual_mass(std::size_t i) const {
   if (!light_about_) return 0.0;
   if (coupling_.virtual_mass) return *coupling_.virtual_mass;
   const double limit = light_ratio(units_, fluid_);
-  return particles_[i].shape.mass < limit * displaced_mass(i) ? kVirtualMass : 0.0;
+  return particles_[i].shape.mass < limit * covered_mass(i) ? kVirtualMass : 0.0;
 }
 
 void Particles::add_virtual_mass(std::size_t i, protocol::Load& load) const {
   const protocol::Shape& shape = particles_[i].shape;
-  const double mass = virtual_mass(i) * displaced_mass(i);
+  const double mass = virtual_mass(i) * covered_mass(i);
   if (mass == 0.0) return;
   const bool home = at_home(i);
   const auto blend = [home](double load, double acceleration, double others, double own,
@@ -179,7 +185,8 @@ void Particles::add_virtual_mass(std::size_t i, protocol::Load& load) const {
   for (int k = flat_ ? 2 : 0; k < 3; ++k) {
     const double spin_up = change_[i].omega[k] / interval_;
     const double others = before_[i] ? shape.inertia * spin_up - before_[i]->torque[k] : 0.0;
-    load.torque[k] = blend(load.torque[k], spin_up, others, shape.inertia, mass * inner_inertia(i));
+    load.torque[k] =
+        blend(load.torque[k], spin_up, others, shape.inertia, mass * inertia_per_mass(i));
   }
 }
 

@@ -13,10 +13,10 @@
 namespace lbm {
 
 /// Which particles get a virtual mass unless the scene says otherwise, and how much of it, over the
-/// mass that they displace: those lighter than kLightRatio times the fluid; where the fluid is so
-/// viscous that a step carries momentum across a cell (τ above kViscousTau), those below
-/// kViscousRatio. Elsewhere it does harm: where surface cells are nearly transparent (τ → ½) the
-/// fluid answers it too late, and it blew up at ρ_s = ρ_f.
+/// mass of the fluid that they cover: those lighter than kLightRatio times the fluid; where the
+/// fluid is so viscous that a step carries momentum across a cell (τ above kViscousTau), those
+/// below kViscousRatio. Elsewhere it does harm: where surface cells are nearly transparent (τ → ½)
+/// the fluid answers it too late, and it blew up at ρ_s = ρ_f.
 inline constexpr double kLightRatio = 0.9, kViscousTau = 0.8, kViscousRatio = 2.0;
 inline constexpr double kVirtualMass = 2.0;
 
@@ -24,12 +24,30 @@ inline constexpr double kVirtualMass = 2.0;
 /// lattice loads in, SI loads out.
 ///
 /// The force that a covered region receives from the lattice includes the change of momentum of the
-/// fluid inside it, m_f dU/dt. The solid integrates its own mass only, so that part is given back:
-///   F = mean(F_lattice) + m_f (U_k - U_{k-1})/T + buoyancy,
-///   T = mean(T_lattice) + I_f (ω_k - ω_{k-1})/T,
-///   disc:   m_f = rho_f pi R² depth,  I_f = ½ m_f R²,
-///   sphere: m_f = 4/3 rho_f pi R³,    I_f = 2/5 m_f R²,
-/// with R the radius that the fluid sees (`hydraulic_ratio` times the particle's).
+/// fluid inside it, m_c dU/dt. The solid integrates its own mass only, so that part is given back:
+///   F = mean(F_lattice) + m_c (U_k - U_{k-1})/T - m_d g,
+///   T = mean(T_lattice) + I_c (ω_k - ω_{k-1})/T,
+///   disc:   m_c = rho_f pi R_c² depth,  m_d = rho_f pi R² depth,  I_c = ½ m_c R_c²,
+///   sphere: m_c = 4/3 rho_f pi R_c³,    m_d = 4/3 rho_f pi R³,    I_c = 2/5 m_c R_c²,
+/// with R the particle's radius and R_c = `hydraulic_ratio` R the radius of the region that it
+/// covers on the lattice. Each term takes the radius of that of which it is the momentum:
+///
+/// - Inner fluid, R_c. Only fluid in covered cells is accelerated with the particle in F_lattice,
+///   so no more than that can be given back. With R the ring between the two radii would be given
+///   back without ever having been charged: the particle would move as if it had less mass.
+/// - Buoyancy, R. The lattice carries no gravity and no hydrostatic pressure, so F_lattice holds
+///   nothing of the upthrust, neither of the covered region nor of the ring. The particle displaces
+///   the fluid of its whole volume.
+/// - Seepage, nothing to add. The ring is fluid on the lattice: the pressure gradient (or the body
+///   force) that drives a flow through a bed acts on it as on all other fluid, and since it does
+///   not accelerate in the mean, it passes that force on to the covered cells as drag. In steady
+///   flow the loads of all particles therefore add up to the drive on the whole volume of the bed,
+///   i rho_f |g| of fluid and solid together, for every ratio. An extra pressure force on the ring
+///   would count it twice. Together with the buoyancy of the whole particle the bed lifts at
+///   i_c = (1-n)(rho_s/rho_f - 1) with n the true porosity (`cases/critical_gradient`).
+///   (In a flow that accelerates, or around one particle alone, the ring does not pass everything
+///   on: there the particle feels the pressure force of the covered region only.)
+/// - Virtual mass, R_c. It stands for the fluid of the lattice that a particle sets in motion.
 ///
 /// A light particle answers a change of load with a large acceleration, which the fluid answers a
 /// step later: explicit coupling blows up. With a virtual mass m_v on both sides of its equation of
@@ -38,7 +56,7 @@ inline constexpr double kVirtualMass = 2.0;
 ///   F' = (m_s (F + m_v (U_k - U_{k-1})/T) - m_v G) / (m_s + m_v),
 /// where G, everything else that acts on the particle, is what the last interval shows:
 /// G = m_s (U_k - U_{k-1})/T - F'_{k-1}. Where nothing changes in time, F' = F. The inner fluid's
-/// m_f dU/dt of such a particle takes the mean acceleration over some five intervals: surface cells
+/// m_c dU/dt of such a particle takes the mean acceleration over some five intervals: surface cells
 /// follow a change more slowly than that term gives it back, which alone blows up below
 /// rho_s/rho_f = 0.25. Proven down to 0.1.
 ///
@@ -102,12 +120,14 @@ class Particles {
     protocol::Vec3 force{}, torque{};  ///< as sent, whole where virtual masses are about
     Motion mean_change;                ///< of the last intervals, the latest with weight kAverage
   };
-  double radius(std::size_t i) const;          // that the fluid sees [m]
-  double displaced_mass(std::size_t i) const;  // of fluid [kg]
-  double inner_inertia(std::size_t i) const;   // per displaced mass [m²]
-  bool at_home(std::size_t i) const;           // this rank holds the centre
+  double covered_radius(std::size_t i) const;    // that the lattice sees, R_c [m]
+  double fluid_mass(double radius) const;        // in a disc or sphere of that radius [kg]
+  double covered_mass(std::size_t i) const;      // m_c: fluid in covered cells [kg]
+  double displaced_mass(std::size_t i) const;    // m_d: fluid in the whole particle's place [kg]
+  double inertia_per_mass(std::size_t i) const;  // I_c / m_c [m²]
+  bool at_home(std::size_t i) const;             // this rank holds the centre
   protocol::Load hydrodynamic(std::size_t i, int steps) const;
-  double virtual_mass(std::size_t i) const;  // over the displaced mass
+  double virtual_mass(std::size_t i) const;  // over the covered mass
   void add_virtual_mass(std::size_t i, protocol::Load& load) const;
   void share_light();
   std::vector<Past> present() const;

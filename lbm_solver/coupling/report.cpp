@@ -71,6 +71,19 @@ std::string boundary_text(const Scene& s) {
   return fmt::format("{} velocity, {} pressure, {} outflow", velocity, pressure, outflow);
 }
 
+/// What a hydraulic ratio does; empty where all particles have 1.
+std::string hydraulic_text(const ParticleScene& particles, double dx, bool flat) {
+  const std::vector<double>& ratios = particles.hydraulic_ratio;
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  if (*least == 1.0) return {};
+  const double lo = *least * particles.diameter.lo, hi = *most * particles.diameter.hi;
+  return fmt::format(
+      "ratio {:.6g}{}: the flow sees {} of D {:.6g} … {:.6g} m, D/Δx {:.4g}; weight, buoyancy and "
+      "contacts are those of the whole {}",
+      fmt::join(ratios, ", "), ratios.size() > 1 ? " by type" : "", flat ? "discs" : "spheres", lo,
+      hi, lo / dx, flat ? "discs" : "spheres");
+}
+
 }  // namespace
 
 std::string describe_choices() {
@@ -118,6 +131,10 @@ std::string describe(const Scene& s, const Plan& p) {
          fmt::format("D {:.6g} … {:.6g} m, D/Δx {:.4g}, ρ {:.6g} … {:.6g} kg/m³",
                      s.particles->diameter.lo, s.particles->diameter.hi, p.cells_per_diameter,
                      s.particles->density.lo, s.particles->density.hi));
+  if (s.particles && s.coupling) {
+    const std::string text = hydraulic_text(*s.particles, p.units.dx, flat);
+    if (!text.empty()) line("hydraulic", text);
+  }
   if (s.coupling)
     line("coupling",
          fmt::format("interval {:.6g} s = {} fluid step(s) = {} solid steps of {:.4g} s [{}]",

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace {
@@ -113,9 +114,51 @@ TEST(Particles, TheFluidSeesTheHydraulicRadius) {
   small.shape.type = 2;
   particles.arrive(std::vector{small}, 4e-4);
   EXPECT_NEAR(particles.bodies(0.0)[0].radius, 8.0, 1e-12);
+}
+
+TEST(Particles, BuoyancyIsThatOfTheWholeParticleForEveryHydraulicRatio) {
+  // The lattice carries no hydrostatic pressure, so the upthrust is all in this term: rho_f V g
+  // with the particle's own volume. Sums of a few products: 1e-12 of the value is round-off.
+  for (const double ratio : {1.0, 0.8, 0.5}) {
+    Scene scene = scene_of({});
+    scene.particles->hydraulic_ratio = {ratio};
+    Particles disc(kUnits, scene, kDomain);
+    disc.arrive(std::vector{particle(0.0, 0.0)}, 4e-4);
+    disc.add(std::vector<BodyLoad>(1));
+    const double of_disc = kFluidMass * 9.8;
+    EXPECT_NEAR(disc.mean_loads(1)[0].force[1], of_disc, 1e-12 * of_disc) << "ratio " << ratio;
+
+    Domain cube{100, 100};
+    cube.nz = 100;
+    Particles sphere(kUnits, scene, cube);
+    protocol::Particle p = particle(0.0, 0.0);
+    p.state.x[2] = 0.005;
+    sphere.arrive(std::vector{p}, 4e-4);
+    sphere.add(std::vector<BodyLoad>(1));
+    const double of_sphere = 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3) * 1000.0 * 9.8;
+    EXPECT_NEAR(sphere.mean_loads(1)[0].force[1], of_sphere, 1e-12 * of_sphere)
+        << "ratio " << ratio;
+  }
+}
+
+TEST(Particles, InnerFluidIsThatOfTheCoveredCells) {
+  // The lattice's force has the momentum of the fluid in covered cells in it, no more: what is
+  // given back goes with ratio² (mass) and ratio⁴ (moment of inertia) of a disc.
+  CouplingScene coupling;
+  coupling.buoyancy = protocol::Buoyancy::None;
+  Scene scene = scene_of(coupling);
+  scene.particles->hydraulic_ratio = {0.8};
+  Particles particles(kUnits, scene, kDomain);
+  particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
   particles.add(std::vector<BodyLoad>(1));
-  // buoyancy of the disc that the fluid sees
-  EXPECT_NEAR(particles.mean_loads(1)[0].force[1], 0.64 * kFluidMass * 9.8, 1e-12);
+  particles.mean_loads(1);
+  particles.arrive(std::vector{particle(0.03, 32.0)}, 4e-4);
+  particles.add(std::vector<BodyLoad>(1));
+  const auto load = particles.mean_loads(1)[0];
+  const double force = 0.64 * kFluidMass * 0.01 / 4e-4;
+  const double torque = 0.4096 * 0.5 * kFluidMass * kRadius * kRadius * 2.0 / 4e-4;
+  EXPECT_NEAR(load.force[0], force, 1e-12 * force);
+  EXPECT_NEAR(load.torque[2], torque, 1e-12 * torque);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/report.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "tests/unit/lbm_solver/scene_files.h"
 
@@ -67,6 +68,19 @@ TEST(Plan, AutoTakesTheOperatorThatSuitsAndSaysWhy) {
   EXPECT_EQ(make_plan(s).kernel.collision, "central_moment");
   s.numerics.collision = "trt";
   EXPECT_NE(make_plan(s).warnings.back().find("turbulence"), std::string::npos);
+}
+
+TEST(Plan, ReportSaysWhatTheHydraulicRatioDoes) {
+  Scene s = settling_disc();
+  EXPECT_EQ(describe(s, make_plan(s)).find("hydraulic"), std::string::npos);
+  s.particles->hydraulic_ratio = {0.8};
+  const std::string one = describe(s, make_plan(s));
+  EXPECT_NE(one.find("ratio 0.8: the flow sees discs of D 0.002 … 0.002 m, D/Δx 16;"),
+            std::string::npos)
+      << one;
+  EXPECT_NE(one.find("buoyancy and contacts are those of the whole discs"), std::string::npos);
+  s.particles->hydraulic_ratio = {1.0, 0.8};
+  EXPECT_NE(describe(s, make_plan(s)).find("ratio 1, 0.8 by type:"), std::string::npos);
 }
 
 TEST(Plan, HelloOffersEveryNumberTheScriptNeeds) {
