@@ -154,7 +154,7 @@ CASES_OF = {  # scene, rows, measure, reference, its uncertainty, source
 
 # ---- only what a scene needs: where a long scene ends early [s] ------------------------------------------------------
 
-BEGINNINGS = {"couette_disc": 30.0, "cylinder_flow": 4.0, "disc_migration": 0.835, "drafting_kissing_tumbling": 0.5,
-              "hydraulic_fracture": 0.001, "lid_driven_cavity": 8.0, "lid_driven_cavity_3d": 0.5, "sedimentation": 0.04,
+BEGINNINGS = {"couette_disc": 30.0, "critical_gradient": 0.1, "cylinder_flow": 4.0, "disc_migration": 0.835,
+              "drafting_kissing_tumbling": 0.5, "hydraulic_fracture": 0.001, "lid_driven_cavity": 8.0, "lid_driven_cavity_3d": 0.5, "sedimentation": 0.04,
               "settling_disc": 0.5, "soil_erosion": 0.005, "soil_erosion_3d": 0.01, "suspension_migration": 0.0104175,
               "ten_cate_sphere": 0.6}
