@@ -82,7 +82,7 @@ struct NumericsScene {
   std::string scheme = "auto";      ///< one of known_schemes()
   double spring_stiffness = 0.001;  ///< of the spring scheme, lattice units
   std::string weight = "auto";      ///< viscous, balanced or fraction; auto: viscous, balanced
-  double magic = 3.0 / 16.0;        ///< Λ of TRT
+  std::optional<double> magic;      ///< Λ of TRT; absent: see solver/plan.h
   double smagorinsky = 0.0;         ///< S_c; 0: no turbulence model
 };
 

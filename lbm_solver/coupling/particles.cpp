@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "lbm_solver/immersed/solid_term.h"
+
 namespace lbm {
 
 namespace {
-
-constexpr double kAverage = 0.2;  // weight of the latest interval in a mean acceleration
 
 Vec3 to_vec3(const protocol::Vec3& v) {
   return {v[0], v[1], v[2]};
@@ -22,23 +22,25 @@ double relaxation_time(const Units& units, const FluidScene& fluid) {
   return 0.5 + 3.0 * fluid.viscosity * units.dt / (units.dx * units.dx);
 }
 
-/// Density over the fluid's below which a particle gets a virtual mass.
-double light_ratio(const Units& units, const FluidScene& fluid) {
-  return relaxation_time(units, fluid) > kViscousTau ? kViscousRatio : kLightRatio;
-}
-
 }  // namespace
 
-Particles::Particles(const Units& units, const Scene& scene, const Decomposition& ranks)
+LightRule light_rule(const std::string& solid_term, double tau) {
+  if (by_resistance(solid_term)) return {1.5, 1.0, 0.05};
+  return {tau > 0.8 ? 2.0 : 0.9, 2.0, 0.2};
+}
+
+Particles::Particles(const Units& units, const Scene& scene, const Decomposition& ranks,
+                     const std::string& solid_term)
     : units_(units),
       fluid_(scene.fluid),
       coupling_(*scene.coupling),
       hydraulic_ratio_(scene.particles->hydraulic_ratio),
       ranks_(ranks),
+      light_(light_rule(solid_term, relaxation_time(units, scene.fluid))),
       flat_(ranks.domain().dimension() == 2),
-      light_about_(coupling_.virtual_mass ? *coupling_.virtual_mass > 0.0
-                                          : scene.particles->density.lo <
-                                                light_ratio(units, fluid_) * fluid_.density) {}
+      light_about_(coupling_.virtual_mass
+                       ? *coupling_.virtual_mass > 0.0
+                       : scene.particles->density.lo < light_.ratio * fluid_.density) {}
 
 std::vector<Particles::Past> Particles::present() const {
   std::vector<Past> all;
@@ -71,13 +73,19 @@ void Particles::arrive(std::span<const protocol::Particle> particles, double int
     before_[i] = past_of(i, s.id);
     if (!before_[i]) continue;
     const Past& past = *before_[i];
-    for (int k = 0; k < 3; ++k) {
-      change_[i].v[k] = s.v[k] - past.motion.v[k];
-      change_[i].omega[k] = s.omega[k] - past.motion.omega[k];
-      mean_change_[i].v[k] = std::lerp(past.mean_change.v[k], change_[i].v[k], kAverage);
-      mean_change_[i].omega[k] =
-          std::lerp(past.mean_change.omega[k], change_[i].omega[k], kAverage);
-    }
+    const auto change = [this](const protocol::Vec3& now, const protocol::Vec3& past,
+                               const protocol::Vec3& past_mean, protocol::Vec3& change,
+                               protocol::Vec3& mean) {
+      // A mean that has not begun takes all of the first change.
+      const double weight = past_mean == protocol::Vec3{} ? 1.0 : light_.mean_weight;
+      for (int k = 0; k < 3; ++k) {
+        change[k] = now[k] - past[k];
+        mean[k] = std::lerp(past_mean[k], change[k], weight);
+      }
+    };
+    change(s.v, past.motion.v, past.mean_change.v, change_[i].v, mean_change_[i].v);
+    change(s.omega, past.motion.omega, past.mean_change.omega, change_[i].omega,
+           mean_change_[i].omega);
   }
   loads_.clear();
   whole_.clear();
@@ -162,8 +170,7 @@ double Particles::inertia_per_mass(std::size_t i) const {
 double Particles::virtual_mass(std::size_t i) const {
   if (!light_about_) return 0.0;
   if (coupling_.virtual_mass) return *coupling_.virtual_mass;
-  const double limit = light_ratio(units_, fluid_);
-  return particles_[i].shape.mass < limit * covered_mass(i) ? kVirtualMass : 0.0;
+  return particles_[i].shape.mass < light_.ratio * covered_mass(i) ? light_.virtual_mass : 0.0;
 }
 
 void Particles::add_virtual_mass(std::size_t i, protocol::Load& load) const {

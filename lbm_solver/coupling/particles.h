@@ -12,13 +12,20 @@
 
 namespace lbm {
 
-/// Which particles get a virtual mass unless the scene says otherwise, and how much of it, over the
-/// mass of the fluid that they cover: those lighter than kLightRatio times the fluid; where the
-/// fluid is so viscous that a step carries momentum across a cell (τ above kViscousTau), those
-/// below kViscousRatio. Elsewhere it does harm: where surface cells are nearly transparent (τ → ½)
-/// the fluid answers it too late, and it blew up at ρ_s = ρ_f.
-inline constexpr double kLightRatio = 0.9, kViscousTau = 0.8, kViscousRatio = 2.0;
-inline constexpr double kVirtualMass = 2.0;
+/// How the coupling keeps light particles stable: which get a virtual mass unless the scene says
+/// otherwise, and how much of it, over the mass that they displace.
+struct LightRule {
+  double ratio;         ///< those lighter than this times the fluid
+  double virtual_mass;  ///< over the displaced mass
+  double mean_weight;   ///< of the last interval in the mean acceleration of their inner fluid
+};
+
+/// Of a solid collision. By resistance (RESISTANCE of lbm_solver/docs): below 1.5 times the fluid,
+/// proven from 0.1 on. With the other terms below 0.9, or below twice the fluid where it is so
+/// viscous that a step carries momentum across a cell (τ above 0.8). Elsewhere those would be
+/// harmed: where surface cells are nearly transparent (τ → ½) the fluid answers a virtual mass too
+/// late, and they blew up at ρ_s = ρ_f.
+LightRule light_rule(const std::string& solid_term, double tau);
 
 /// The solid's particles between wire and lattice: SI states in, bodies in lattice units out,
 /// lattice loads in, SI loads out.
@@ -65,9 +72,12 @@ inline constexpr double kVirtualMass = 2.0;
 /// virtual mass) is added by its home, the rank that holds its centre. The solid adds the parts.
 class Particles {
  public:
-  Particles(const Units& units, const Scene& scene, const Decomposition& ranks);
-  Particles(const Units& units, const Scene& scene, const Domain& domain)
-      : Particles(units, scene, Decomposition(domain)) {}
+  /// @param solid_term  that the particles' cells collide by
+  Particles(const Units& units, const Scene& scene, const Decomposition& ranks,
+            const std::string& solid_term);
+  Particles(const Units& units, const Scene& scene, const Domain& domain,
+            const std::string& solid_term)
+      : Particles(units, scene, Decomposition(domain), solid_term) {}
 
   /// What the solid told about its bonds with the particles; null where it has none.
   const protocol::BondReport* bonds() const { return bonds_ ? &*bonds_ : nullptr; }
@@ -118,7 +128,7 @@ class Particles {
     std::int64_t id = 0;
     Motion motion;
     protocol::Vec3 force{}, torque{};  ///< as sent, whole where virtual masses are about
-    Motion mean_change;                ///< of the last intervals, the latest with weight kAverage
+    Motion mean_change;                ///< of the last intervals (LightRule)
   };
   double covered_radius(std::size_t i) const;    // that the lattice sees, R_c [m]
   double fluid_mass(double radius) const;        // in a disc or sphere of that radius [kg]
@@ -137,6 +147,7 @@ class Particles {
   CouplingScene coupling_;
   std::vector<double> hydraulic_ratio_;
   Decomposition ranks_;
+  LightRule light_;
   bool flat_;         // two dimensions
   bool light_about_;  // some particle may get a virtual mass
   double interval_ = 0.0;

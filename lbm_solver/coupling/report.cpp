@@ -49,8 +49,9 @@ double measure_step(Fluid& fluid, const std::vector<Body>& bodies) {
   return seconds / steps;
 }
 
-const char* weight_text(WeightRule rule) {
-  switch (rule) {
+const char* weight_text(const KernelChoice& kernel) {
+  if (by_resistance(kernel.solid_term)) return "";  // has none
+  switch (kernel.weight) {
     case WeightRule::Viscous:
       return " with B(ε,τ)";
     case WeightRule::Balanced:
@@ -164,7 +165,7 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   part(p.kernel.turbulence != "none", "Smagorinsky turbulence", "turbulence model");
   const bool imb = p.scheme == known_schemes().front();
   part(p.kernel.solid_term != "none" || !imb,
-       imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel.weight) + ", loads"
+       imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel) + ", loads"
            : p.scheme + ", loads",
        "solids");
   part(!s.obstacles.empty(), fmt::format("{} obstacles at rest", s.obstacles.size()), "obstacles");

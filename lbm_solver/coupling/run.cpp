@@ -116,7 +116,7 @@ class CoupledRun {
         fluid_(make_fluid(scene, plan, ranks)),
         bodies_(obstacle_bodies(scene, plan)),
         obstacles_(bodies_.size()),
-        particles_(plan.units, scene, ranks),
+        particles_(plan.units, scene, ranks, plan.kernel.solid_term),
         lubrication_{(plan.kernel.parameters.tau - 0.5) / 3.0, scene.coupling->lubrication_range,
                      static_cast<double>(plan.fluid_steps)},
         partner_(solid_.agree()),

@@ -21,7 +21,13 @@ ResistanceCollision::ResistanceCollision(const std::string& term,
 
 RadiusShift radius_shift(const std::string& solid_term, int dimension) {
   if (!by_resistance(solid_term)) return {};
-  return dimension == 2 ? RadiusShift{0.0, 0.0} : RadiusShift{0.0, 0.0};
+  return dimension == 2 ? RadiusShift{-0.02, 0.13} : RadiusShift{-0.02, 0.23};
+}
+
+double load_lag(const std::string& solid_term, double tau) {
+  if (!by_resistance(solid_term)) return 0.0;
+  const double momentum = solid_term == "resistance" ? 2.0 : ShellExchange(tau - 0.5).momentum;
+  return (momentum - 1.0) / momentum;
 }
 
 }  // namespace lbm

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "lbm_solver/immersed/resistance.h"
+
 namespace lbm {
 namespace {
 
@@ -34,6 +36,12 @@ constexpr SolidTerm::Parts mix(const SolidTerm::Parts& a, const SolidTerm::Parts
 constexpr double kForget = 0.05;
 constexpr SolidTerm::Halves kBelowSurface{mix(kNobleTorczynski.even, kEquilibrium.even, kForget),
                                           mix(kNobleTorczynski.odd, kEquilibrium.odd, kForget)};
+
+/// The same by resistance: all but reflection, see ShellExchange.
+SolidTerm::Halves shell(double tau) {
+  const ShellExchange e(tau - 0.5);
+  return {{-e.even_rate, 0.0, e.even_rate}, {-2.0, 2.0 - e.momentum, e.momentum}};
+}
 
 }  // namespace
 
@@ -68,7 +76,7 @@ SolidTerm solid_term(const std::string& name, double tau) {
   if (name == "layered_holdych") return layered(kHoldych);
   if (name == "layered_noble_torczynski") return layered(kNobleTorczynski);
   if (name == "resistance") return same(kHoldych);
-  if (name == "layered_resistance") return layered(kHoldych);
+  if (name == "layered_resistance") return {kHoldych, shell(tau), kEquilibrium, kHoldych};
   std::string known;
   for (const std::string& n : known_solid_terms()) known += " " + n;
   throw std::invalid_argument("no solid term '" + name + "'; known:" + known);

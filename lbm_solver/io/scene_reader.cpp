@@ -92,9 +92,10 @@ NumericsScene read_numerics(TableReader t, int d) {
   n.single = t.choice_or("precision", "double", {"double", "single"}) == "single";
   n.collision = t.choice_or("collision", n.collision,
                             {"auto", "bgk", "trt", "central_moment", "recursive_regularised"});
-  n.solid_term = t.choice_or("solid_term", n.solid_term,
-                             {"auto", "layered_holdych", "layered_noble_torczynski", "holdych",
-                              "noble_torczynski", "superposition"});
+  n.solid_term =
+      t.choice_or("solid_term", n.solid_term,
+                  {"auto", "resistance", "layered_resistance", "layered_holdych",
+                   "layered_noble_torczynski", "holdych", "noble_torczynski", "superposition"});
   n.scheme =
       t.choice_or("scheme", n.scheme,
                   {"auto", "immersed_moving_boundary", "bounce_back", "interpolated_bounce_back",
@@ -102,7 +103,7 @@ NumericsScene read_numerics(TableReader t, int d) {
   n.spring_stiffness = t.number_or("spring_stiffness", n.spring_stiffness, Bounds::positive(), "");
   n.weight = t.choice_or("weight", n.weight, {"auto", "viscous", "balanced", "fraction"});
   n.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
-  n.magic = t.number_or("magic", n.magic, {1e-6, 10.0}, "");
+  n.magic = t.optional_number("magic", {1e-6, 10.0}, "");
   t.finish();
   return n;
 }

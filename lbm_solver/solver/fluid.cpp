@@ -7,6 +7,7 @@
 
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/base/simd.h"
+#include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/immersed/solid_fraction.h"
 
 namespace lbm {
@@ -25,9 +26,9 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
       halo_(ranks.alone() ? nullptr : std::make_unique<HaloExchange>(*ranks_, f_)),
       cover_(choice.solid_term == "none"
                  ? nullptr
-                 : std::make_unique<CoverMap>(domain(), cells(),
-                                              radius_shift(choice.solid_term,
-                                                           domain().dimension()))) {
+                 : std::make_unique<CoverMap>(
+                       domain(), cells(), radius_shift(choice.solid_term, domain().dimension()))),
+      two_steps_(load_lag(choice.solid_term, choice.parameters.tau)) {
   if (lattice().D != domain().dimension())
     throw std::invalid_argument(std::string(lattice().name) + " for a box of " +
                                 std::to_string(domain().dimension()) + " dimensions");
@@ -40,14 +41,26 @@ void Fluid::set_equilibrium(const Cell3& cell, double rho, const Vec3& u) {
 
 void Fluid::place(std::span<const Body> bodies) {
   BPLBM_EXPECT(has_solids());
-  if (scheme_)
-    bodies_.assign(bodies.begin(), bodies.end());
-  else
-    cover_->update(bodies);
+  remember_loads();
+  bodies_.assign(bodies.begin(), bodies.end());
+  if (!scheme_) cover_->update(bodies);
+}
+
+/// Before the map forgets the loads of the last step.
+void Fluid::remember_loads() {
+  if (!two_steps_.on() || scheme_ || !loads_are_new_) return;
+  two_steps_.remember(bodies_, cover_->loads());
+  loads_are_new_ = false;
+}
+
+std::vector<BodyLoad> Fluid::loads() const {
+  if (!two_steps_.on() || scheme_) return momentary_loads();
+  return two_steps_.mean(bodies_, cover_->loads(), domain(), cells());
 }
 
 double Fluid::solid_fraction(int x, int y, int z) const {
   double sum = cover_ ? cover_->solid_fraction(x, y, z) : 0.0;
+  if (!scheme_) return sum;
   for (const Body& body : bodies_) {
     const Vec3 centre(x + 0.5, y + 0.5, domain().dimension() == 3 ? z + 0.5 : 0.0);
     const Vec3 arm = domain().nearest_image(centre - body.centre);
@@ -92,6 +105,18 @@ void Fluid::sweep_and_exchange(EsotericPull& stream) {
 }
 
 void Fluid::advance(std::int64_t steps) {
+  if (!two_steps_.on() || bodies_.empty()) return make_steps(steps);
+  remember_loads();
+  if (steps > 1) {  // the load of a step needs that of the step before
+    make_steps(steps - 1);
+    loads_are_new_ = true;
+    remember_loads();
+  }
+  make_steps(1);
+  loads_are_new_ = true;
+}
+
+void Fluid::make_steps(std::int64_t steps) {
   const bool passes = scheme_ || !patches_.empty();
   std::function<double(const Cell3&)> solids;
   if (cover_) solids = [this](const Cell3& c) { return cover_->solid_fraction(c[0], c[1], c[2]); };
@@ -257,6 +282,11 @@ std::map<std::string, std::vector<double>> Fluid::state() const {
     values.push_back(mass);
   }
   if (scheme_) state["scheme"] = scheme_->memory();
+  if (two_steps_.on()) {
+    TwoStepLoads last = two_steps_;
+    if (loads_are_new_) last.remember(bodies_, cover_->loads());
+    state["loads"] = ranks_->collect(last.lines());
+  }
   return state;
 }
 
@@ -284,6 +314,10 @@ void Fluid::restore(const std::map<std::string, std::vector<double>>& state) {
     patches_[i]->restore_mass(ranks_->rank() == 0 ? values.back() : 0.0);
   }
   if (scheme_) scheme_->restore(find("scheme"));
+  if (two_steps_.on()) {
+    two_steps_.restore(find("loads"));
+    loads_are_new_ = false;
+  }
   const Cell3 n = cells().size, all = domain().cells();
   const auto q_count = static_cast<std::size_t>(lattice().Q);
   std::vector<double> populations = find("populations");

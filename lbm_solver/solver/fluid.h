@@ -10,6 +10,7 @@
 #include "lbm_solver/boundary/patch.h"
 #include "lbm_solver/field/halo_exchange.h"
 #include "lbm_solver/immersed/body_scheme.h"
+#include "lbm_solver/immersed/two_step_loads.h"
 #include "lbm_solver/solver/kernel.h"
 #include "lbm_solver/solver/row_moments.h"
 
@@ -68,8 +69,13 @@ class Fluid {
   void advance(std::int64_t steps);
   std::int64_t steps() const { return steps_; }
 
-  /// Loads on the placed bodies over the last step, in their order: this rank's cells' part.
-  std::vector<BodyLoad> loads() const { return scheme_ ? scheme_->loads() : cover_->loads(); }
+  /// Loads on the placed bodies over the last step, in their order: this rank's cells' part. By
+  /// resistance with a part of the step before (load_lag), which takes the ringing out.
+  std::vector<BodyLoad> loads() const;
+  /// What the bodies took from their cells in the last step alone: what the fluid lost.
+  std::vector<BodyLoad> momentary_loads() const {
+    return scheme_ ? scheme_->loads() : cover_->loads();
+  }
   /// Part of a cell that solids cover, at most 1.
   double solid_fraction(int x, int y, int z = 0) const;
 
@@ -112,6 +118,8 @@ class Fluid {
 
  private:
   void sweep_and_exchange(EsotericPull& stream);
+  void make_steps(std::int64_t steps);
+  void remember_loads();
 
   std::shared_ptr<const Decomposition> ranks_;
   Populations f_;
@@ -121,7 +129,9 @@ class Fluid {
   std::unique_ptr<HaloExchange> halo_;
   std::unique_ptr<CoverMap> cover_;
   std::unique_ptr<BodyScheme> scheme_;
-  std::vector<Body> bodies_;  // of scheme_
+  std::vector<Body> bodies_;  // as placed
+  TwoStepLoads two_steps_;
+  bool loads_are_new_ = false;  // those in the map are of a step that two_steps_ does not know
   std::vector<std::unique_ptr<Patch>> patches_;
   std::int64_t steps_ = 0;
 };

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/scene_check.h"
 
 namespace lbm {
@@ -16,7 +17,8 @@ namespace {
 constexpr double kStepFractionOfContact = 0.1;  // solid step / √(m/k): the papers' λ
 constexpr double kLimitReynoldsCell = 5.0;      // beyond: fixed-Λ TRT gives noisy forces
 constexpr double kDensityChange = 0.03;         // that a pressure difference may cause
-constexpr double kFewCells = 4.0;               // a diameter below which nothing is claimed
+constexpr double kLeastMagic = 0.05, kLargestMagic = 0.375;  // where resistance is positive
+constexpr double kFewCells = 4.0;  // a diameter below which nothing is claimed
 
 double cell_size(const Scene& s) {
   if (s.numerics.cell) return *s.numerics.cell;
@@ -168,17 +170,36 @@ void choose_solids(const Scene& s, Plan& plan) {
              : balanced             ? WeightRule::Balanced
                                     : WeightRule::Viscous;
   k.solid_term = n.solid_term;
+  if (by_resistance(n.solid_term) && k.collision != "trt")
+    throw InputError(fmt::format("{}: numerics.solid_term = \"{}\" works with collision = \"trt\" "
+                                 "only, which here is {}",
+                                 s.file, n.solid_term, k.collision),
+                     "take collision = \"trt\", or solid_term = \"auto\"");
   if (n.solid_term != "auto") return;
   const auto take = [&](const char* term, const char* reason) {
     k.solid_term = term;
     plan.solid_reason = std::string("auto: ") + reason;
   };
   if (k.collision != "trt")
-    take("layered_noble_torczynski", "Holdych rings where the fluid is under-resolved");
+    take("layered_noble_torczynski", "least noise where the fluid is under-resolved");
   else if (s.coupling || spinning)
-    take("layered_holdych", "nearly as accurate as Holdych, and stable in bodies that move");
+    take("layered_resistance", "exact on planes at every τ, and calm in bodies that move");
   else
-    take("holdych", "the most accurate and least dependent on τ for bodies at rest");
+    take("resistance", "exact on planes at every τ");
+}
+
+/// Λ of TRT: 3/16 puts a half-way wall half-way; beside covered cells by resistance 1/10.
+double choose_magic(const Scene& s, const KernelChoice& k) {
+  if (!by_resistance(k.solid_term)) return s.numerics.magic.value_or(3.0 / 16.0);
+  const double magic = s.numerics.magic.value_or(kResistanceMagic);
+  if (magic < kLeastMagic || magic > kLargestMagic)
+    throw InputError(
+        fmt::format(
+            "{}: numerics.magic = {:.6g} is out of the range {} … {} in which covered cells "
+            "by resistance are stable",
+            s.file, magic, kLeastMagic, kLargestMagic),
+        "leave it out (0.1), or take another numerics.solid_term");
+  return magic;
 }
 
 void choose_kernel(const Scene& s, Plan& plan) {
@@ -209,7 +230,7 @@ void choose_kernel(const Scene& s, Plan& plan) {
   choose_solids(s, plan);
   const Vec3 force = s.fluid.body_force * (dt * dt / dx);
   k.parameters = {0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),
-                  n.magic,
+                  choose_magic(s, k),
                   n.smagorinsky,
                   force.x(),
                   force.y(),

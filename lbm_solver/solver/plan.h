@@ -43,7 +43,7 @@ double particle_volume(const Scene& scene, double diameter);
 
 /// Chooses what the scene leaves open and refuses what cannot work.
 /// Step rule: C = max(10 velocity_scale, √(3 Δp/(rho 0.03)), 3 nu/dx); the last keeps tau <= 1.5.
-/// Collision "auto": TRT with layered Holdych while Re_h <= 5, central moments with
+/// Collision "auto": TRT with covered cells by resistance while Re_h <= 5, central moments with
 /// Noble–Torczynski above.
 /// @throws InputError
 Plan make_plan(const Scene& scene);

@@ -50,7 +50,7 @@ TEST_F(ReplayTest, ARecordingOfTheSolidReplaysAsWell) {
 }
 
 TEST_F(ReplayTest, AnotherFluidIsNoticedWithTheFirstDifference) {
-  scene_.change_scene("\"layered_holdych\"", "\"noble_torczynski\"");
+  scene_.change_scene("\"layered_resistance\"", "\"noble_torczynski\"");
   const auto result = job(kLbm, {kReplay + " --as solid trace.h5"});
   EXPECT_EQ(result.exit_code, 1) << result.output;
   EXPECT_NE(result.output.find("first difference at interval 1, particle 1, force[1]"),
@@ -64,7 +64,7 @@ TEST_F(ReplayTest, InfoAndDiffSpeak) {
   for (const char* word :
        {"recorded by the fluid program", "1 … 1 particles", "ending    complete"})
     EXPECT_NE(info.output.find(word), std::string::npos) << info.output;
-  scene_.change_scene("\"layered_holdych\"", "\"noble_torczynski\"");
+  scene_.change_scene("\"layered_resistance\"", "\"noble_torczynski\"");
   ASSERT_EQ(scene_.run("--record other.h5").exit_code, 0);
   const auto diff = test::run(test::kBin + "/trace diff trace.h5 other.h5", scene_.folder(), 20.0);
   EXPECT_EQ(diff.exit_code, 1) << diff.output;

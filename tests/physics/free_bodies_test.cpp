@@ -30,9 +30,9 @@ Released release(double ratio, double viscosity, double seconds, double early,
   scene.fluid = {.density = 1000.0, .viscosity = viscosity, .gravity = {0.0, -9.8}};
   scene.coupling.emplace().virtual_mass = virtual_mass;
   scene.particles.emplace();
-  Fluid fluid = make({"", "layered_holdych"}, {80, 160, Side::Wall, Side::Wall}, "trt",
+  Fluid fluid = make({"", "layered_resistance"}, {80, 160, Side::Wall, Side::Wall}, "trt",
                      0.5 + 3.0 * viscosity * dt / (dx * dx));
-  Particles particles(units, scene, fluid.domain());
+  Particles particles(units, scene, fluid.domain(), "layered_resistance");
   const double mass = ratio * 1000.0 * std::numbers::pi * radius * radius;
   protocol::Particle p{{1, {0.01, 0.02, 0.0}, {}, {}},
                        {1, radius, mass, 0.5 * mass * radius * radius, 1}};
@@ -99,14 +99,16 @@ FreeRun free_run(const Domain& domain, const Case& c, const std::string& collisi
                          .radius = radius,
                          .start = start,
                          .steps = steps,
-                         .fluid_steps = fluid_steps});
+                         .fluid_steps = fluid_steps,
+                         .solid_term = c.term});
 }
 
 TEST(PeriodicCrossing, OfFacesAndCornersChangesNoTrajectory) {
   const Domain domain{48, 40, Side::Periodic, Side::Periodic};
   const Vec3 inside(20.0 + 77.0 / 1024, 19.0 + 301.0 / 1024), gravity(2e-5, -1e-5);
   const auto from = [&](const Vec3& start) {
-    return free_run(domain, {"", "layered_holdych"}, "trt", 0.7, 2.5, 5.25, start, gravity, 1000);
+    return free_run(domain, {"", "layered_resistance"}, "trt", 0.7, 2.5, 5.25, start, gravity,
+                    1000);
   };
   const FreeRun reference = from(inside);
   EXPECT_GT((reference.place.back() - inside).norm(), 2.0);  // it goes somewhere
@@ -166,7 +168,7 @@ double viscosity_gain(const Case& c, double tau, double diameter, double fractio
 TEST(DiluteSuspension, HasTheViscosityOfFreeDiscs) {
   // 1 + 2φ [Brady 1984] as φ → 0; the gain is linear in φ where walls and images are far.
   // 10 %: the target at ten cells.
-  const Case c{"", "layered_holdych"};
+  const Case c{"", "layered_resistance"};
   for (const double tau : {0.6, 1.0, 1.5}) {
     const double one = viscosity_gain(c, tau, 10.0, 0.01);
     const double two = viscosity_gain(c, tau, 10.0, 0.02);
@@ -181,7 +183,7 @@ TEST(DiluteSuspension, HasTheViscosityOfFreeDiscs) {
 TEST(Averaging, OverSeveralFluidStepsKeepsTheTerminalVelocity) {
   const Domain domain{64, 300, Side::Wall, Side::Wall};
   const auto speed = [&](int fluid_steps) {
-    return free_run(domain, {"", "layered_holdych"}, "trt", 0.7, 1.5, 5.0, {32.0, 260.0},
+    return free_run(domain, {"", "layered_resistance"}, "trt", 0.7, 1.5, 5.0, {32.0, 260.0},
                     {0.0, -4e-5}, 6000, fluid_steps)
         .velocity.back()
         .y();

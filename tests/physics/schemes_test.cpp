@@ -13,7 +13,9 @@ namespace {
 using namespace lbm;
 using test::Case, test::make;
 
-const std::vector<Case> kAll{{"", "layered_holdych"},
+const std::vector<Case> kAll{{"", "resistance"},
+                             {"", "layered_resistance"},
+                             {"", "layered_holdych"},
                              {"", "layered_noble_torczynski"},
                              {"", "noble_torczynski"},
                              {"", "holdych"},

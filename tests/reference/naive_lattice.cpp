@@ -210,8 +210,7 @@ Cell NaiveLattice::resistance(std::size_t cell) {
   const auto& p = choice_.parameters;
   const Macroscopic m = macroscopic(f);
   const NaiveCover& cover = cover_[cell];
-  const double s = tau(f) - 0.5, t = 1.0 - cover.eps,
-               mu = (2.0 - 16.0 / 3 * p.magic) * t * t * t * t;
+  const double s = tau(f) - 0.5, t = 1.0 - cover.eps, mu = (2.0 - 16.0 / 3 * p.magic) * t * t * t;
   double share = 0.0;  // of momentum that populations along the axes carry
   for (int i = 1; i < l_.Q; ++i)
     if (c(i).squaredNorm() == 1.0) share += 3.0 * l_.w[i] * c(i).x() * c(i).x();
@@ -230,8 +229,9 @@ Cell NaiveLattice::resistance(std::size_t cell) {
     others = 1.0 / (0.5 + n(1, 1) / s);
     even_rate = 1.0 / tau(f);
   } else if (!cover.wall && choice_.solid_term == "layered_resistance") {
-    others = cover.core ? 1.0 : 1.95;
-    exchange = Eigen::Vector2d(1.0, others).asDiagonal();
+    const double shell = std::max(1.0, 1.0 / (0.5 + 0.005 / (p.tau - 0.5)));
+    others = cover.core ? 1.0 : 2.0;
+    exchange = Eigen::Vector2d(cover.core ? 1.0 : shell, others).asDiagonal();
   }
   const bool at_surface = even_rate > 0.0;
   const Vec3 lost = exchange(0, 0) * w + exchange(0, 1) * z;
@@ -251,7 +251,7 @@ Cell NaiveLattice::resistance(std::size_t cell) {
       after +=
           even_rate * (even_fluid - even) + (1.0 - 0.5 * even_rate) * 0.5 * (push[i] + push[o]);
     else if (!reflects)
-      after = cover.core ? even_solid : 0.95 * (even - even_fluid + even_solid) + 0.05 * even_solid;
+      after += (cover.core ? 1.0 : std::min(1.0, 0.015 / (p.tau - 0.5))) * (even_solid - even);
     out[i] = after + (1.0 - others) * (odd - own) + own +
              3.0 * l_.w[i] * c(i).dot(force - lost - psi(i) * ghost_lost);
   }

@@ -4,6 +4,7 @@
 
 #include <numbers>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lbm_solver/coupling/particles.h"
@@ -20,7 +21,8 @@ struct FreeDisc {
   Vec3 start;
   int inserted = 0;  ///< step before which it is not there
   int steps = 0;
-  int fluid_steps = 1;  ///< a coupling interval
+  int fluid_steps = 1;                            ///< a coupling interval
+  std::string solid_term = "layered_resistance";  ///< of the fluid's kernel
 };
 
 /// Of each interval in which the disc was there: place and velocity at its end, mean force.
@@ -30,7 +32,7 @@ struct FreeRun {
 };
 
 inline FreeRun free_run(Fluid& fluid, const Scene& scene, const FreeDisc& disc) {
-  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene, fluid.domain());
+  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene, fluid.domain(), disc.solid_term);
   const double mass = disc.ratio * std::numbers::pi * disc.radius * disc.radius;
   const double interval = disc.fluid_steps;
   protocol::Particle p{{1, {disc.start.x(), disc.start.y(), 0.0}, {}, {}},

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/fluid.h"
 
 namespace test {
@@ -26,7 +27,10 @@ inline Fluid make(const Case& c, const Domain& domain, const std::string& collis
                        "none",
                        force.norm() > 0.0,
                        c.term,
-                       {.tau = tau, .force_x = force.x(), .force_y = force.y()}});
+                       {.tau = tau,
+                        .magic = by_resistance(c.term) ? kResistanceMagic : 3.0 / 16.0,
+                        .force_x = force.x(),
+                        .force_y = force.y()}});
   if (!c.scheme.empty()) fluid.use(make_scheme(c.scheme, domain, fluid.lattice(), {0.5 * force}));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
@@ -70,7 +74,7 @@ class MomentumBalance {
     fluid_.step();
     if (links_) covered_ = discs;
     Vec3 on_discs(0.0, 0.0);
-    for (const auto& load : fluid_.loads()) on_discs += load.force;
+    for (const auto& load : fluid_.momentary_loads()) on_discs += load.force;
     return (momentum(fluid_, covered_) - before + on_discs).norm() / std::max(1.0, on_discs.norm());
   }
 

@@ -57,7 +57,7 @@ TEST(Plan, AutoTakesTheOperatorThatSuitsAndSaysWhy) {
   s.numerics.collision = s.numerics.solid_term = "auto";
   Plan p = make_plan(s);
   EXPECT_EQ(p.kernel.collision, "trt");
-  EXPECT_EQ(p.kernel.solid_term, "layered_holdych");
+  EXPECT_EQ(p.kernel.solid_term, "layered_resistance");
   s.fluid.viscosity = 1e-6;  // Re_h = 7.5
   p = make_plan(s);
   EXPECT_EQ(p.kernel.collision, "central_moment");

@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "\"recursive_regularised\"\nprecision = \"single\"",
                 {"numerics.collision", "double precision only"}},
         Spoiled{"unknown_term",
-                "\"layered_holdych\"",
+                "\"layered_resistance\"",
                 "\"holy\"",
                 {"numerics.solid_term", "noble_torczynski"}},
         Spoiled{"cell_and_cells",
