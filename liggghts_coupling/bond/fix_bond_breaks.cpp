@@ -5,6 +5,7 @@
 #include <error.h>
 #include <fmt/format.h>
 #include <force.h>
+#include <sys/stat.h>
 #include <update.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include "liggghts_coupling/bond/arguments.h"
 #include "liggghts_coupling/bond/bond_book.h"
 
 namespace dem {
@@ -50,7 +52,7 @@ FixBondBreaks::FixBondBreaks(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
   for (int k = 3; k + 1 < narg; k += 2) {
     const std::string word = arg[k];
     if (word == "every")
-      nevery = force->inumeric(FLERR, arg[k + 1]);
+      nevery = argument<int>(error, this, word, arg[k + 1]);
     else if (word == "file")
       path_ = arg[k + 1];
     else
@@ -103,7 +105,14 @@ void FixBondBreaks::write() {
   });
   if (all.empty()) return;
   for (const BreakEvent& e : all) std::fputs(text(e).c_str(), file_.get());
-  std::fflush(file_.get());
+  struct stat status {};
+  const bool written = std::fflush(file_.get()) == 0 && !std::ferror(file_.get());
+  if (written && fstat(fileno(file_.get()), &status) == 0 && status.st_nlink > 0) return;
+  error->one(FLERR, fmt::format("fix bond/breaks: {} {}", path_,
+                                written ? "was deleted while the run was writing it; start the "
+                                          "run again, and leave its folder alone until it has ended"
+                                        : "cannot be written; is the disk full?")
+                        .c_str());
 }
 
 void FixBondBreaks::check_counts() {
