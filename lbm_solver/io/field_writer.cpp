@@ -63,6 +63,7 @@ FieldWriter::FieldWriter(const std::string& folder, const Units& units, int dime
 /// aside
 bool FieldWriter::keep_frames(double until) {
   const std::string path = folder_ + "/fields.h5", aside = folder_ + "/fields-cut-off.h5";
+  if (!std::filesystem::exists(path)) return false;
   Handle file;
   try {
     file = protocol::hdf5::open_file(path, Open::Append);

@@ -2,6 +2,7 @@
 #include "lbm_solver/io/probe_writer.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -13,7 +14,8 @@
 
 namespace lbm {
 
-CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double keep_until) {
+CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double keep_until)
+    : path_(path) {
   std::vector<std::string> kept;
   if (keep_until > 0.0) {
     std::ifstream before(path);
@@ -35,6 +37,16 @@ void CsvWriter::row(std::initializer_list<double> values) {
     separator = ",";
   }
   fmt::print(file_.get(), "\n");
+}
+
+void CsvWriter::flush() {
+  struct stat status {};
+  if (std::fflush(file_.get()) != 0 || std::ferror(file_.get()))
+    throw protocol::ProtocolError(path_ + " cannot be written; is the disk full?");
+  if (fstat(fileno(file_.get()), &status) == 0 && status.st_nlink > 0) return;
+  throw protocol::ProtocolError(path_ +
+                                " was deleted while the run was writing it; start the run again, "
+                                "and leave its folder alone until it has ended");
 }
 
 ProbeWriter::ProbeWriter(const std::string& folder, int dimension, double keep_until)
