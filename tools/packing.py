@@ -54,6 +54,12 @@ def diameters(args, random):
     lo, hi = args.diameter
     if not 0 < lo <= hi:
         fail(f"--diameter {lo} {hi}: give the smallest and the largest, both positive")
+    if not np.all(np.isfinite([*args.box, lo, hi, args.fraction, args.overlap])):
+        fail("--box, --diameter, --fraction and --overlap are finite numbers")
+    if args.seed < 0:
+        fail("--seed is a whole number of at least 0")
+    if (args.count is not None and args.count < 1) or not args.fraction > 0 or not args.overlap > 0:
+        fail("--count is a whole number of at least 1, --fraction and --overlap are positive")
     area = (args.box[1] - args.box[0]) * (args.box[3] - args.box[2])
     if not area > 0 or args.box[1] <= args.box[0]:
         fail("--box: give X_LO X_HI Y_LO Y_HI with X_LO < X_HI and Y_LO < Y_HI")
@@ -206,4 +212,10 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        print("packing | stopped: interrupted by Ctrl-C", file=sys.stderr)
+        sys.exit(1)
+    except OSError as error:
+        fail(f"{error.filename}: {error.strerror}; give another --out, in a folder that exists")
