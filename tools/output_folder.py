@@ -1,7 +1,8 @@
 """The output folder of a run, as tools/run sees it: whose it is, what lies in it, and who writes there.
 
-A folder of ours carries the file .bplbm (lbm_solver/io/output_folder writes the same): the program, the scene, and a line
-`file NAME` for each file besides those that lbm knows by itself. Nothing else in it is ever removed, and that by lbm alone.
+A folder of ours carries the file .bplbm (lbm_solver/io/output_folder writes the same): the program, the scene, and a
+line `file NAME` for each file besides those that lbm knows by itself. Nothing else in it is ever removed, and that by
+lbm alone.
 """
 
 import fcntl

@@ -103,7 +103,7 @@ void FixBondBreaks::write() {
   std::sort(all.begin(), all.end(), [](const BreakEvent& a, const BreakEvent& b) {
     return std::tuple(a.step, a.first, a.second) < std::tuple(b.step, b.first, b.second);
   });
-  if (all.empty()) return;
+  if (!file_) return;
   for (const BreakEvent& e : all) std::fputs(text(e).c_str(), file_.get());
   struct stat status {};
   const bool written = std::fflush(file_.get()) == 0 && !std::ferror(file_.get());

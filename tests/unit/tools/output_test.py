@@ -1,5 +1,5 @@
-"""The folder of tools/run, and how it ends: nothing of anybody's is lost, and every end is a sentence. No program of ours
-is started."""
+"""The folder of tools/run, and how it ends: nothing of anybody's is lost, and every end is a sentence. No program of
+ours is started."""
 
 import contextlib
 import fcntl

@@ -62,7 +62,9 @@ class Packing(unittest.TestCase):
         self.assertNotEqual(texts[0], texts[2])
 
     def test_refusals(self):
-        for more, word in ((["--fraction", "0.95"], "cannot all fit"), (["--count", "900"], "cannot all fit")):
+        for more, word in ((["--fraction", "0.95"], "cannot all fit"), (["--count", "900"], "cannot all fit"),
+                           (["--fraction", "nan"], "finite"), (["--count", "0"], "at least 1"), (["--seed", "-1"], "--seed"),
+                           (["--box", "0", "nan", "0", "1"], "finite"), (["--overlap", "0"], "positive")):
             job = make(self.folder.name, *more)
             self.assertEqual(job.returncode, 2)
             self.assertIn(word, job.stderr)
