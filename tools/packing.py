@@ -56,8 +56,6 @@ def diameters(args, random):
         fail(f"--diameter {lo} {hi}: give the smallest and the largest, both positive")
     if not np.all(np.isfinite([*args.box, lo, hi, args.fraction, args.overlap])):
         fail("--box, --diameter, --fraction and --overlap are finite numbers")
-    if args.seed < 0:
-        fail("--seed is a whole number of at least 0")
     if (args.count is not None and args.count < 1) or not args.fraction > 0 or not args.overlap > 0:
         fail("--count is a whole number of at least 1, --fraction and --overlap are positive")
     area = (args.box[1] - args.box[0]) * (args.box[3] - args.box[2])
@@ -192,6 +190,8 @@ def write(args, places, sizes):
 
 def main():
     args = arguments()
+    if args.seed < 0:
+        fail("--seed is a whole number of at least 0")
     random = np.random.default_rng(args.seed)
     sizes = diameters(args, random)
     if args.look:

@@ -50,7 +50,8 @@ void mark(const fs::path& folder, const std::string& scene) {
 bool is_part(const std::string& name) {
   const bool state = name.starts_with("checkpoint.") || name.starts_with("fault.");
   return (state && name.ends_with(".solid")) ||
-         (name.ends_with(".part") && (state || name.starts_with("summary.json")));
+         (name.ends_with(".part") && (state || name.starts_with("summary.json"))) ||
+         name.ends_with(".csv.part");
 }
 
 /// A name in the mark stays inside the folder, whoever wrote it.

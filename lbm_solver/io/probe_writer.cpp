@@ -20,14 +20,18 @@ CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double
   if (keep_until > 0.0) {
     std::ifstream before(path);
     std::string line;
-    std::getline(before, line);  // the columns
-    while (std::getline(before, line))
+    std::getline(before, line);                          // the columns
+    while (std::getline(before, line) && !before.eof())  // not a line that a kill has cut off
       if (std::strtod(line.c_str(), nullptr) < keep_until) kept.push_back(line);
   }
-  file_.reset(std::fopen(path.c_str(), "w"));
+  // under another name, or a kill at this moment would lose the lines of the run before
+  const std::string part = path + ".part";
+  file_.reset(std::fopen(part.c_str(), "w"));
   if (!file_) throw InputError(path, "cannot be written", "choose another --out");
   fmt::print(file_.get(), "{}\n", columns);
   for (const std::string& line : kept) fmt::print(file_.get(), "{}\n", line);
+  if (std::fflush(file_.get()) != 0 || std::rename(part.c_str(), path.c_str()) != 0)
+    throw protocol::ProtocolError(path + " cannot be written; is the disk full?");
 }
 
 void CsvWriter::row(std::initializer_list<double> values) {

@@ -28,7 +28,7 @@ std::string kept_lines(const std::string& path, long before) {
   std::ifstream file(path);
   std::string line, kept;
   std::getline(file, line);
-  while (std::getline(file, line)) {
+  while (std::getline(file, line) && !file.eof()) {  // not a line that a kill has cut off
     long step = 0;
     if (std::istringstream(line) >> step && step <= before) kept += line + "\n";
   }
@@ -73,13 +73,17 @@ void FixBondBreaks::init() {
 void FixBondBreaks::open() {
   const std::string kept =
       update->ntimestep > 0 ? kept_lines(path_, static_cast<long>(update->ntimestep)) : "";
-  file_.reset(std::fopen(path_.c_str(), "w"));
+  // under another name, or a kill at this moment would lose the lines of the run before
+  const std::string part = path_ + ".part";
+  file_.reset(std::fopen(part.c_str(), "w"));
   if (!file_)
     error->one(FLERR, ("fix bond/breaks: " + path_ +
                        " cannot be written; give a file in a folder that exists")
                           .c_str());
   std::fputs((kColumns + kept).c_str(), file_.get());
-  std::fflush(file_.get());
+  if (std::fflush(file_.get()) != 0 || std::rename(part.c_str(), path_.c_str()) != 0)
+    error->one(FLERR,
+               ("fix bond/breaks: " + path_ + " cannot be written; is the disk full?").c_str());
 }
 
 void FixBondBreaks::end_of_step() {
