@@ -45,7 +45,8 @@ void define(CLI::App& app, Options& o) {
   app.add_option("--out", o.run.out, "folder of all output")->capture_default_str();
   app.add_flag("--force", o.force,
                "replace an earlier run in --out; else its folder is renamed to OUT.1, OUT.2 …");
-  app.add_option("--until", o.run.until, "stop at this time [s]");
+  app.add_option("--until", o.run.until, "stop at this time [s]")
+      ->check(protocol::finite_number(0.0));
   app.add_flag("--restart{checkpoint}", o.run.restart,
                "go on from the checkpoint in --out, or, with --restart=fault, from the last states "
                "that both programs kept when a run failed")

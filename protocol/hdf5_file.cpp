@@ -25,7 +25,11 @@ namespace {
 bool is_something_else(const std::string& path) {
   std::error_code none;
   const auto size = std::filesystem::file_size(path, none);
-  return !none && size > 0 && H5Fis_hdf5(path.c_str()) <= 0;
+  if (none || size == 0) return false;
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT);
+  const bool recording = file >= 0 && H5Aexists(file, "trace_version") > 0;
+  if (file >= 0) H5Fclose(file);
+  return !recording;
 }
 
 }  // namespace

@@ -178,8 +178,24 @@ def wrap(places, args):
     return places
 
 
+MADE_BY = "discs; made by tools/make_packing"
+
+
+def refuse_others(args):
+    """A mistyped name costs no file that is no packing."""
+    for ending, ours in ((".liggghts", MADE_BY), (".csv", "x,y,diameter")):
+        path = pathlib.Path(args.out + ending)
+        if not path.exists():
+            continue
+        if path.is_file():
+            with open(path, errors="replace") as file:
+                if ours in file.readline(10000):
+                    continue
+        fail(f"{path} is there and no packing of this tool: it is not overwritten; give another --out, or remove it")
+
+
 def write(args, places, sizes):
-    lines = [f"# {len(sizes)} discs; made by tools/make_packing {' '.join(sys.argv[1:])}"]
+    lines = [f"# {len(sizes)} {MADE_BY} {' '.join(sys.argv[1:])}"]
     for i, ((x, y), d) in enumerate(zip(places, sizes)):
         lines.append(f"create_atoms 1 single {x:.9g} {y:.9g} 0.0 units box")
         lines.append(f"set atom {i + 1} diameter {d:.9g} density ${{disc_density}}")
@@ -192,6 +208,7 @@ def main():
     args = arguments()
     if args.seed < 0:
         fail("--seed is a whole number of at least 0")
+    refuse_others(args)
     random = np.random.default_rng(args.seed)
     sizes = diameters(args, random)
     if args.look:

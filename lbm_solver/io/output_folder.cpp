@@ -51,7 +51,8 @@ bool is_part(const std::string& name) {
   const bool state = name.starts_with("checkpoint.") || name.starts_with("fault.");
   return (state && name.ends_with(".solid")) ||
          (name.ends_with(".part") && (state || name.starts_with("summary.json"))) ||
-         name.ends_with(".csv.part");
+         name.ends_with(".csv.part") ||
+         (name.starts_with("fields-cut-off") && name.ends_with(".h5"));
 }
 
 /// A name in the mark stays inside the folder, whoever wrote it.

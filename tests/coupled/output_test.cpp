@@ -147,11 +147,29 @@ TEST_F(OutputTest, TracesAreRegularFilesThatHoldWhatTheySay) {
 
 TEST(Recording, TakesThePlaceOfNoOtherFile) {
   const test::SettlingDisc scene;
-  const auto job = scene.run("--record scene.toml");
-  EXPECT_EQ(job.exit_code, 1) << job.output;
-  EXPECT_NE(job.output.find("scene.toml is there and no recording"), std::string::npos)
-      << job.output;
+  ASSERT_EQ(scene.run("--record one.h5").exit_code, 0);
+  for (const std::string name : {"scene.toml", "out.1/fields.h5"}) {
+    const auto job = scene.run("--record " + name);
+    EXPECT_EQ(job.exit_code, 1) << job.output;
+    EXPECT_NE(job.output.find(name + " is there and no recording"), std::string::npos)
+        << job.output;
+  }
   EXPECT_EQ(test::read_file(scene.folder() + "/scene.toml"), scene.scene());
+  EXPECT_EQ(scene.run("--record one.h5").exit_code, 0);
+  const auto cut =
+      test::run(test::kBin + "/trace cut one.h5 ./one.h5 --intervals 1", scene.folder(), 10.0);
+  EXPECT_EQ(cut.exit_code, 2);
+  EXPECT_NE(cut.output.find("is the recording itself"), std::string::npos) << cut.output;
+}
+
+TEST(CommandLine, NumbersAreFinite) {
+  for (const std::string words :
+       {"replay --as solid t.h5 --timeout nan", "replay --as solid t.h5 --timeout 0",
+        "replay --as solid t.h5 --tolerance nan", "replay --as solid t.h5 --tolerance 1x"}) {
+    const auto job = test::run(test::kBin + "/" + words, ".", 10.0);
+    EXPECT_EQ(job.exit_code, 2) << job.output;
+    EXPECT_NE(job.output.find("' is not a number "), std::string::npos) << job.output;
+  }
 }
 
 }  // namespace
