@@ -50,7 +50,8 @@ void define(CLI::App& app, Options& o) {
   app.add_flag("--restart{checkpoint}", o.run.restart,
                "go on from the checkpoint in --out, or, with --restart=fault, from the last states "
                "that both programs kept when a run failed")
-      ->check(CLI::IsMember({"checkpoint", "fault"}));
+      ->check(CLI::IsMember({"checkpoint", "fault"}))
+      ->excludes("--force");
   app.add_option("--record", o.record, "write the exchange to this trace file");
   app.add_option("--threads", o.threads, "threads (else OMP_NUM_THREADS, else 1)")
       ->check(CLI::Range(1, kMostThreads));

@@ -70,6 +70,7 @@ TEST_F(OutputTest, AnEarlierRunIsKeptUnlessItIsToBeReplaced) {
   folder_.write("out/thesis.txt", "years of work");
   expect_ok(run("--until 1 --force"));
   EXPECT_FALSE(fs::exists(path("out.2")));
+  expect_end(run("--restart --force"), 2, {"lbm | error | ", "--force"});
   EXPECT_TRUE(fs::exists(path("out/thesis.txt")));
 }
 
