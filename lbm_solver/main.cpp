@@ -6,15 +6,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
-#include <filesystem>
+#include <memory>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/coupling/run.h"
+#include "lbm_solver/io/output_folder.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "protocol/command_line.h"
 #include "protocol/mpi_channel.h"
+#include "protocol/numbers.h"
 #include "protocol/program.h"
 #include "protocol/trace.h"
 
@@ -22,13 +24,15 @@ namespace {
 
 using namespace lbm;
 
+constexpr int kMostThreads = 1024;
+
 struct Options {
   std::vector<std::string> scene{"scene.toml"};
   RunOptions run;
   std::string record, progress = "auto";
   std::vector<int> grid;
   int threads = 0;
-  bool check = false, liggghts_vars = false, list = false;
+  bool force = false, check = false, liggghts_vars = false, list = false;
 };
 
 void add_scene(CLI::App& app, Options& o) {
@@ -39,14 +43,18 @@ void add_scene(CLI::App& app, Options& o) {
 void define(CLI::App& app, Options& o) {
   app.set_version_flag("--version", std::string("lbm ") + BPLBM_VERSION);
   app.add_option("--out", o.run.out, "folder of all output")->capture_default_str();
-  app.add_option("--until", o.run.until, "stop at this time [s]")->check(CLI::PositiveNumber);
+  app.add_flag("--force", o.force,
+               "replace an earlier run in --out; else its folder is renamed to OUT.1, OUT.2 …");
+  app.add_option("--until", o.run.until, "stop at this time [s]")
+      ->check(protocol::finite_number(0.0));
   app.add_flag("--restart{checkpoint}", o.run.restart,
                "go on from the checkpoint in --out, or, with --restart=fault, from the last states "
                "that both programs kept when a run failed")
-      ->check(CLI::IsMember({"checkpoint", "fault"}));
+      ->check(CLI::IsMember({"checkpoint", "fault"}))
+      ->excludes("--force");
   app.add_option("--record", o.record, "write the exchange to this trace file");
   app.add_option("--threads", o.threads, "threads (else OMP_NUM_THREADS, else 1)")
-      ->check(CLI::Range(1, 1024));
+      ->check(CLI::Range(1, kMostThreads));
   app.add_option("--grid", o.grid, "ranks along x, y, z (else the grid with the least surface)")
       ->expected(3)
       ->check(CLI::PositiveNumber);
@@ -63,7 +71,21 @@ void define(CLI::App& app, Options& o) {
   check->callback([&o] { o.check = true; });
 }
 
+/// The OpenMP library takes whatever number it finds, and ends the program where the system cannot
+/// start as many threads. @throws InputError
+void check_environment() {
+  const char* set = std::getenv("OMP_NUM_THREADS");
+  if (!set) return;
+  const std::string text = set;  // a number, or one for each level of nested regions
+  const auto first = protocol::to_number<int>(text.substr(0, text.find(',')));
+  if (first && *first >= 1 && *first <= kMostThreads) return;
+  throw InputError(fmt::format("the environment variable OMP_NUM_THREADS = '{}'", text),
+                   fmt::format("is no number of threads from 1 to {}", kMostThreads),
+                   "correct or unset it, or give --threads N");
+}
+
 int check(const Options& o) {
+  check_environment();
   const Scene scene = read_scene(o.scene);
   const Plan plan = make_plan(scene);
   if (!o.liggghts_vars) {
@@ -90,6 +112,18 @@ void set_threads(int threads) {
     omp_set_num_threads(threads);
   else if (!std::getenv("OMP_NUM_THREADS"))
     omp_set_num_threads(1);  // the solid program needs cores too
+}
+
+/// Rank 0 takes the folder before any rank goes on.
+std::unique_ptr<OutputFolder> take_folder(const Options& o, const Scene& scene,
+                                          const Decomposition& ranks) {
+  std::unique_ptr<OutputFolder> folder;
+  const EarlierRun earlier = !o.run.restart.empty() ? EarlierRun::GoOn
+                             : o.force              ? EarlierRun::Replace
+                                                    : EarlierRun::SetAside;
+  if (ranks.rank() == 0) folder = std::make_unique<OutputFolder>(o.run.out, scene.title, earlier);
+  if (!ranks.alone()) MPI_Barrier(ranks.comm());
+  return folder;
 }
 
 /// How the box is divided among the ranks of lbm.
@@ -119,8 +153,10 @@ std::string trace_of(const std::string& file, const Decomposition& ranks) {
 void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol::World& world) {
   world = protocol::connect(protocol::Role::Fluid);
   if (world.coupled()) channel = protocol::make_mpi_channel(world, protocol::Role::Fluid);
+  if (o.threads == 0) check_environment();
   const Scene scene = read_scene(o.scene);
-  const Plan plan = make_plan(scene);
+  check_until(scene, o.run);
+  const Plan plan = make_plan(scene, step_to_keep(scene, o.run));
   const Decomposition ranks = divide(o, scene, plan, world.local);
   if (scene.coupling && !channel)
     throw InputError(
@@ -129,11 +165,9 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   if (!scene.coupling && channel)
     throw InputError(scene.file, "has no [coupling], but a solid program was started",
                      "start lbm alone, or add the tables [coupling] and [particles]");
-  std::error_code failed;
-  std::filesystem::create_directories(o.run.out, failed);
-  if (failed) throw InputError(o.run.out, failed.message(), "choose another --out");
   if (!o.record.empty() && !channel)
     throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
+  const std::unique_ptr<OutputFolder> folder = take_folder(o, scene, ranks);
   if (!o.record.empty())
     channel = protocol::make_recording_channel(
         std::move(channel),
@@ -141,6 +175,8 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
                                                 world.partner_ranks));
   set_threads(o.threads);
   Log log = ranks.rank() == 0 ? Log(o.run.out, progress_style(o.progress)) : Log();
+  if (folder && !folder->set_aside().empty())
+    log.block("kept         the earlier run of this folder is now " + folder->set_aside());
   log.block(describe(scene, plan));
   if (!ranks.alone())
     log.block(fmt::format("ranks        {} × {} × {}\n", ranks.grid()[0], ranks.grid()[1],

@@ -6,8 +6,22 @@
 #include <string>
 
 #include "protocol/errors.h"
+#include "protocol/numbers.h"
 
 namespace protocol {
+
+/// A finite number, above or, if it may be equal, of at least `low`. (CLI::PositiveNumber and
+/// CLI::Range let nan through.)
+inline CLI::Validator finite_number(double low, bool may_be_equal = false) {
+  const std::string wanted =
+      (may_be_equal ? "a number of at least " : "a number above ") + CLI::detail::to_string(low);
+  return {[=](std::string& text) -> std::string {
+            const auto value = to_number<double>(text);
+            if (value && (*value > low || (may_be_equal && *value == low))) return {};
+            return "'" + text + "' is not " + wanted;
+          },
+          wanted};
+}
 
 /// Reads the command line into what `app` was told of.
 /// @param program  named in the message of a mistake: "PROGRAM | error | …"

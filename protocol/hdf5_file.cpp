@@ -4,7 +4,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
+
+#include "protocol/input_file.h"
 
 namespace protocol::hdf5 {
 
@@ -16,10 +19,32 @@ void check(herr_t status, const std::string& what) {
   if (status < 0) throw std::runtime_error("HDF5 failed to " + what);
 }
 
+namespace {
+
+/// A recording takes the place of another one, but of no other file: a mistyped path loses nothing.
+bool is_something_else(const std::string& path) {
+  std::error_code none;
+  const auto size = std::filesystem::file_size(path, none);
+  if (none || size == 0) return false;
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT);
+  const bool recording = file >= 0 && H5Aexists(file, "trace_version") > 0;
+  if (file >= 0) H5Fclose(file);
+  return !recording;
+}
+
+}  // namespace
+
 Handle open_file(const std::string& path, Open mode) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // our exceptions speak instead of its stack dump
   const bool creates = mode == Open::Create || mode == Open::CreateForReaders;
-  std::FILE* probe = std::fopen(path.c_str(), creates || mode == Open::Append ? "ab" : "rb");
+  if (const std::string problem = why_unreadable(path);
+      !problem.empty() && (!creates || std::filesystem::exists(path)))
+    throw std::runtime_error("cannot open " + path + ": " + problem + "; give another path");
+  if (mode == Open::CreateForReaders && is_something_else(path))
+    throw std::runtime_error(path +
+                             " is there and no recording: it is not overwritten; give "
+                             "another path, or remove it");
+  std::FILE* probe = std::fopen(path.c_str(), creates ? "ab" : mode == Open::Append ? "r+b" : "rb");
   if (!probe)
     throw std::runtime_error("cannot open " + path + ": " + std::strerror(errno) +
                              (creates ? "; choose a folder that exists and is writable" : ""));
@@ -98,6 +123,20 @@ double real_attribute(hid_t object, const std::string& name) {
 }
 std::int64_t integer_attribute(hid_t object, const std::string& name) {
   return number_attribute<std::int64_t>(object, name, H5T_NATIVE_INT64);
+}
+
+std::size_t size_that_fits(hid_t dataset, std::size_t bytes, const std::string& name) {
+  std::string path(static_cast<std::size_t>(H5Fget_name(dataset, nullptr, 0)), '\0');
+  H5Fget_name(dataset, path.data(), path.size() + 1);
+  const Handle space(H5Dget_space(dataset), H5Sclose, "read a space");
+  if (H5Sget_simple_extent_ndims(space) != 1)
+    throw std::runtime_error(path + " is damaged: " + name + " is no list");
+  hsize_t size = 0;
+  check(H5Sget_simple_extent_dims(space, &size, nullptr), "read the size of " + name);
+  if (size > std::filesystem::file_size(path) / bytes)
+    throw std::runtime_error(path + " is damaged: " + name + " claims " + std::to_string(size) +
+                             " rows, more than the file can hold");
+  return size;
 }
 
 }  // namespace protocol::hdf5

@@ -46,6 +46,10 @@ enum class Open { Create, CreateForReaders, Append, Read, ReadWhileWritten };
 /// @throws std::runtime_error with the path and a reason a user can act on
 Handle open_file(const std::string& path, Open mode);
 
+/// Rows of a list of one dimension, each of so many bytes.
+/// @throws std::runtime_error  its file is too small for them: it is damaged
+std::size_t size_that_fits(hid_t dataset, std::size_t bytes, const std::string& name);
+
 void set_attribute(hid_t object, const std::string& name, const std::string& text);
 void set_attribute(hid_t object, const std::string& name, double value);
 void set_attribute(hid_t object, const std::string& name, std::int64_t value);

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <limits>
 #include <vector>
 
+#include "protocol/numbers.h"
 #include "protocol/program.h"
 
 namespace protocol {
@@ -145,8 +145,7 @@ class MpiChannel final : public Channel {
 
 double patience(double seconds) {
   if (seconds >= 0.0) return seconds;
-  const char* set = std::getenv("BPLBM_CONNECT_TIMEOUT");
-  return set ? std::atof(set) : 5.0;
+  return seconds_from_environment("BPLBM_CONNECT_TIMEOUT", 5.0);
 }
 
 /// Everybody tells everybody its role, without collectives.

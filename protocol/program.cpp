@@ -11,6 +11,8 @@
 #include <ctime>
 #include <fstream>
 
+#include "protocol/numbers.h"
+
 namespace protocol {
 
 namespace {
@@ -34,8 +36,7 @@ double seconds_since_signal() {
 }
 
 double grace() {
-  const char* set = std::getenv("BPLBM_GRACE");
-  return set ? std::atof(set) : 0.6;
+  return seconds_from_environment("BPLBM_GRACE", 0.6);
 }
 
 }  // namespace

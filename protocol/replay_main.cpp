@@ -102,8 +102,10 @@ int main(int argc, char** argv) {
   app.add_option("--as", options.as, "the program to stand in for")
       ->required()
       ->check(CLI::IsMember({"solid", "fluid"}));
-  app.add_option("--tolerance", options.tolerance, "largest relative difference that passes");
-  app.add_option("--timeout", options.timeout, "longest wait for the partner [s]");
+  app.add_option("--tolerance", options.tolerance, "largest relative difference that passes")
+      ->check(finite_number(0.0, true));
+  app.add_option("--timeout", options.timeout, "longest wait for the partner [s]")
+      ->check(finite_number(0.0));
   app.add_option("trace", options.path, "file written with --record")->required();
   if (const auto code = read_command_line(app, "replay", argc, argv)) return *code;
 

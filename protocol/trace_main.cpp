@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 
 #include "protocol/command_line.h"
 #include "protocol/trace_compare.h"
@@ -70,6 +71,9 @@ int diff(const std::string& path_a, const std::string& path_b) {
 /// The beginning of a recording, as if its run had been told to end there.
 int cut(const std::string& path, const std::string& out, std::int64_t intervals) {
   const Trace trace(path);
+  std::error_code none;
+  if (std::filesystem::equivalent(path, out, none))
+    throw std::runtime_error(out + " is the recording itself; give another name for what is kept");
   const std::int64_t first = trace.hello(Role::Fluid).first_interval, last = first + intervals;
   TraceWriter writer(out, trace.recorder(), trace.local_rank(), trace.remote_size());
   bool ends = false;

@@ -88,10 +88,7 @@ template <class Row>
 Table<Row> Table<Row>::open(hid_t file, const std::string& name) {
   Table table{{H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "find table " + name},
               row_type<Row>()};
-  const Handle space(H5Dget_space(table.data_), H5Sclose, "read a space");
-  hsize_t size = 0;
-  check(H5Sget_simple_extent_dims(space, &size, nullptr), "read the size of " + name);
-  table.stored_ = size;
+  table.stored_ = hdf5::size_that_fits(table.data_, sizeof(Row), name);
   return table;
 }
 

@@ -95,9 +95,17 @@ def drive_text(scene):
     return "\n".join(parts)
 
 
+def read_scene(folder):
+    """The scene as it is written; lbm check says more about what is wrong with one."""
+    scene = tomllib.loads((folder / "scene.toml").read_text())
+    if len(scene["box"]["size"]) == 3:
+        raise ValueError("a box in three dimensions is not drawn; after a run, draw_slice of pictures cuts it")
+    return scene
+
+
 def draw(name):
     folder = CASES / name
-    scene = tomllib.loads((folder / "scene.toml").read_text())
+    scene = read_scene(folder)
     unit = 1e-3 if max(scene["box"]["size"]) < 0.5 else 1.0
     label = "mm" if unit == 1e-3 else "m"
     box = np.array(scene["box"]["size"]) / unit
@@ -143,7 +151,12 @@ def main():
         if not (CASES / name / "scene.toml").exists():
             print(f"draw_setup | error | no scene '{name}'; tools/run --list shows them", file=sys.stderr)
             return 2
-        draw(name)
+        try:
+            draw(name)
+        except (OSError, KeyError, TypeError, ValueError) as e:
+            why = f"lacks {e}; build/release/bin/lbm check says what a scene needs" if isinstance(e, KeyError) else e
+            print(f"draw_setup | error | {CASES / name / 'scene.toml'}: {why}", file=sys.stderr)
+            return 2
         print(f"draw_setup | {CASES / name / 'pictures' / 'setup.png'}")
     return 0
 

@@ -6,6 +6,7 @@ Called by tools/run, which has built the programs before. Exit codes: 0 ok, 1 fa
 
 import argparse
 import json
+import math
 import os
 import pathlib
 import re
@@ -13,16 +14,21 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
+
+import output_folder
+from mpi_job import STOPPED, MpiJob, environment
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CASES = ROOT / "cases"
 OUT_OF_TOLERANCE = 4
-BAD_INPUT = 2
+FAULT, BAD_INPUT = 1, 2
+MOST_THREADS = 1024
 
 
-def fail(text):
+def fail(text, code=BAD_INPUT):
     print(f"run | error | {text}", file=sys.stderr)
-    sys.exit(BAD_INPUT)
+    sys.exit(code)
 
 
 def scenes():
@@ -47,31 +53,67 @@ def options(scene):
     return found
 
 
+def heading_of(scene):
+    """First line of a scene's README, else the title in its scene.toml."""
+    readme = CASES / scene / "README.md"
+    lines = readme.read_text(errors="replace").splitlines() if readme.is_file() else []
+    if lines:
+        return lines[0].lstrip("# ")
+    try:
+        return f"{tomllib.loads((CASES / scene / 'scene.toml').read_text()).get('title', scene)} (no README.md)"
+    except (OSError, ValueError):  # lbm says what is wrong with it
+        return "(no README.md)"
+
+
 def list_scenes():
     for scene in scenes():
-        heading = (CASES / scene / "README.md").read_text().splitlines()[0].lstrip("# ")
+        heading = heading_of(scene)
         print(f"{scene:20} {heading}")
         own = "".join(f"; --{key} {'|'.join(values)}|all" for key, values in options(scene).items())
         print(f"{'':20} sets: {', '.join(sets(scene))}; variants: {', '.join(variants(scene)) or '-'}{own}")
 
 
+def whole(text):
+    """A number of ranks or threads."""
+    if not text.isascii() or not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number of at least 1")
+    return int(text)
+
+
+def seconds(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0):
+        raise argparse.ArgumentTypeError(f"'{text}' is no positive number of seconds")
+    return value
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        fail(f"{message}; see tools/run --help")
+
+
 def parser():
-    p = argparse.ArgumentParser(prog="tools/run", description="Runs a scene and draws its pictures.")
+    p = Parser(prog="tools/run", description="Runs a scene and draws its pictures.")
     p.add_argument("scene", nargs="?", help="name of a folder in cases/")
     p.add_argument("--list", action="store_true", help="scenes with their sets and variants")
     p.add_argument("--set", default="resolved", help="parameter set: resolved, literal, fine")
     p.add_argument("--variant", default="", help="overlay variant-NAME.toml of the scene")
-    p.add_argument("--fluid-ranks", type=int, default=1, metavar="N")
-    p.add_argument("--solid-ranks", type=int, default=1, metavar="M")
-    p.add_argument("--threads", type=int, default=1, metavar="T", help="of the fluid")
+    p.add_argument("--fluid-ranks", type=whole, default=1, metavar="N")
+    p.add_argument("--solid-ranks", type=whole, default=1, metavar="M")
+    p.add_argument("--threads", type=whole, default=1, metavar="T", help=f"of the fluid; at most {MOST_THREADS}")
     p.add_argument("--engine", default="liggghts", choices=["liggghts", "lammps", "reference", "python"],
                    help="who moves the particles; the last two suit free discs")
-    p.add_argument("--until", type=float, metavar="SECONDS", help="stop at this physical time")
+    p.add_argument("--until", type=seconds, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
     p.add_argument("--restart", action="store_const", const="checkpoint", help="go on from the checkpoint in --out")
     p.add_argument("--restart=fault", dest="restart", action="store_const", const="fault",
                    help="go on from the states that both programs kept at a fault")
-    p.add_argument("--out", metavar="DIR", help="default: out/SCENE[-SET][-VARIANT]")
+    p.add_argument("--out", metavar="DIR", help="a new, an empty or an earlier run's folder; default: "
+                   "out/SCENE[-SET][-VARIANT], where an earlier run is renamed to ….1, ….2 and so on")
+    p.add_argument("--force", action="store_true", help="replace an earlier run in the output folder")
     p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
     p.add_argument("--no-study", action="store_true", help="leave out the scene's comparison runs")
     p.epilog = "A scene may have choices of its own (--list), as --start 5 of disc_migration."
@@ -91,6 +133,10 @@ def arguments(words):
         fail(f"{args.scene} has no set '{args.set}'; there are: {', '.join(sets(args.scene))}")
     if args.variant and args.variant not in variants(args.scene):
         fail(f"{args.scene} has no variant '{args.variant}'; there are: {', '.join(variants(args.scene)) or 'none'}")
+    if args.threads > MOST_THREADS:
+        fail(f"--threads {args.threads}: a rank takes at most {MOST_THREADS}; take more --fluid-ranks")
+    if args.force and args.restart:
+        fail("--force replaces an earlier run and --restart goes on from it; give one of them")
     known = options(args.scene)
     args.own = []
     while rest:
@@ -123,23 +169,14 @@ def scene_files(args):
     return [str(f) for f in files]
 
 
-def environment(processes):
-    """What Open MPI needs: permission to run as root, and polite waits on a full machine."""
-    env = dict(os.environ)
-    if os.geteuid() == 0:
-        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    if processes > (os.cpu_count() or 1):
-        env["OMPI_MCA_mpi_yield_when_idle"] = "1"
-    return env
-
-
 def command(args, out):
     bin_dir = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
     progress = "line" if sys.stdout.isatty() else "tenths"
     fluid = [str(bin_dir / "lbm"), *scene_files(args)]
     fluid += ["--out", str(out), "--threads", str(args.threads), "--progress", progress]
     fluid += ["--set", args.set] + (["--variant", label(args)] if label(args) else [])
-    fluid += ["--until", repr(args.until)] if args.until else []
+    fluid += ["--until", repr(args.until)] if args.until is not None else []
+    fluid += ["--force"] if args.force else []
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
     fluid += [f"--restart={args.restart}"] if args.restart else []
     first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
@@ -164,20 +201,35 @@ def solid_command(args, bin_dir, out):
     return [str(bin_dir / "liggghts"), *common, "-var", "out_folder", str(out)]
 
 
+def take_folder(args, out, look=False):
+    """Makes the folder ready and holds it for as long as what is returned lives; or looks whether that could be done."""
+    try:
+        if look:
+            return output_folder.check(out, bool(args.out), args.restart, args.force)
+        hold, aside = output_folder.take(out, args.scene, bool(args.out), args.restart, args.force)
+    except output_folder.Refused as refusal:
+        fail(refusal)
+    except OSError as error:
+        fail(f"{error.filename or out}: {error.strerror}; choose another --out")
+    if aside:
+        print(f"run | kept | the earlier run in {out} is now {aside}")
+    return hold
+
+
 def run_job(args, out):
-    if shutil.which("mpirun") is None:
-        fail("mpirun not found; run tools/install")
-    if not args.restart:
-        shutil.rmtree(out, ignore_errors=True)
-    out.mkdir(parents=True, exist_ok=True)
+    """The job in a folder of ours. Returns its exit code."""
     line = command(args, out)
     env = environment(args.fluid_ranks * args.threads + args.solid_ranks)
     added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)
     print(f"run | {added + ' ' if added else ''}{shlex.join(line)}", flush=True)
-    code = subprocess.run(line, env=env, check=False).returncode
+    job = MpiJob(line, env)
+    code = job.run()
+    if job.stopped:
+        print("run | stopped: the job was told to end", file=sys.stderr)
+        return STOPPED
     if code == 0:
         add_solid_waiting(out)
-    return code if code in (0, 1, 2, 3) else 1
+    return code if code in (0, 1, 2, 3) else FAULT
 
 
 def add_solid_waiting(out):
@@ -194,12 +246,22 @@ def add_solid_waiting(out):
           f"the fluid, of {summary['wall_seconds']:.3g} s")
 
 
-def draw(scene, out):
+def draw(scene, out, until):
     script = CASES / scene / "plot.py"
     if not script.exists():
         return
     env = dict(os.environ, PYTHONPATH=str(ROOT / "tools"), MPLBACKEND="Agg")
-    subprocess.run(["/usr/bin/python3", str(script), str(out)], env=env, check=True)
+    job = subprocess.run(["/usr/bin/python3", str(script), str(out)], env=env, check=False, stderr=subprocess.PIPE,
+                         text=True, errors="replace")
+    if job.returncode == 0:
+        sys.stderr.write(job.stderr)
+        return
+    (out / "plot.log").write_text(job.stderr)
+    lines = job.stderr.strip().splitlines() or [f"it ended with code {job.returncode}"]
+    made = json.loads((out / "summary.json").read_text())["physical_seconds"]
+    fail(f"{script} cannot judge and draw this run, which made {made:.6g} s: {lines[-1]}; "
+         f"{'a run that --until has cut short may lack what it needs: leave --until out' if until else 'correct it'} "
+         f"(its whole message is in {out / 'plot.log'}; the run's numbers are complete)", FAULT)
 
 
 def judge(out):
@@ -221,7 +283,7 @@ def comparison_runs(args):
             first, *others = options(args.scene)[key]
             args.own[i] = (key, first)
             return [["--" + key, other] for other in others]
-    if args.no_study or args.set != "resolved" or label(args) or args.until or not plan.exists():
+    if args.no_study or args.set != "resolved" or label(args) or args.until is not None or not plan.exists():
         return []
     return [line.split() for line in plan.read_text().splitlines() if line.strip() and not line.startswith("#")]
 
@@ -230,9 +292,13 @@ def study(args, runs, out):
     """Runs them, each in a folder of its own: --variant trt in study/variant-trt."""
     for words in runs:
         other = arguments([args.scene, *words])
+        folder = out / "study" / "-".join(words).removeprefix("--").replace("---", "_")
+        restart = args.restart if (folder / f"{args.restart}.h5").exists() else None
         run = argparse.Namespace(**{**vars(args), "set": other.set, "variant": other.variant, "own": other.own,
-                                    "record": None})
-        code = run_job(run, out / "study" / "-".join(words).removeprefix("--").replace("---", "_"))
+                                    "record": None, "restart": restart, "force": not restart})
+        hold = take_folder(run, folder)
+        code = run_job(run, folder)
+        del hold
         if code:
             return code
     return 0
@@ -245,10 +311,24 @@ def main():
         return 0
     if not args.scene:
         fail("which scene? tools/run --list shows them")
+    out = output_folder.resolved(args.out or out_folder(args))
     if args.look:
+        take_folder(args, out, look=True)
         return 0
-    out = pathlib.Path(args.out).resolve() if args.out else out_folder(args)
+    if shutil.which("mpirun") is None:
+        fail("mpirun not found; run tools/install")
     others = comparison_runs(args)
+    hold = take_folder(args, out)
+    before = output_folder.files(out)
+    try:
+        return go(args, others, out)
+    finally:
+        if hold:  # what has come besides lbm's own, as pictures: a later run may replace it
+            output_folder.add_files(out, output_folder.files(out) - before)
+
+
+def go(args, others, out):
+    """The job, its comparison runs, pictures and results. Returns the exit code."""
     code = run_job(args, out) or study(args, others, out)
     if code:
         print(f"run | stopped with exit code {code}; logs in {out}", file=sys.stderr)
@@ -259,7 +339,7 @@ def main():
             print("run | states of the fault are kept (fault.*): --restart=fault goes on from them if both sides' are",
                   file=sys.stderr)
         return code
-    draw(args.scene, out)
+    draw(args.scene, out, args.until is not None)
     good = judge(out)
     print(f"run | outputs in {out}")
     for picture in sorted(out.glob("*.png")):
@@ -268,4 +348,8 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("run | stopped: interrupted by Ctrl-C", file=sys.stderr)
+        sys.exit(STOPPED)

@@ -54,6 +54,10 @@ def diameters(args, random):
     lo, hi = args.diameter
     if not 0 < lo <= hi:
         fail(f"--diameter {lo} {hi}: give the smallest and the largest, both positive")
+    if not np.all(np.isfinite([*args.box, lo, hi, args.fraction, args.overlap])):
+        fail("--box, --diameter, --fraction and --overlap are finite numbers")
+    if (args.count is not None and args.count < 1) or not args.fraction > 0 or not args.overlap > 0:
+        fail("--count is a whole number of at least 1, --fraction and --overlap are positive")
     area = (args.box[1] - args.box[0]) * (args.box[3] - args.box[2])
     if not area > 0 or args.box[1] <= args.box[0]:
         fail("--box: give X_LO X_HI Y_LO Y_HI with X_LO < X_HI and Y_LO < Y_HI")
@@ -174,8 +178,24 @@ def wrap(places, args):
     return places
 
 
+MADE_BY = "discs; made by tools/make_packing"
+
+
+def refuse_others(args):
+    """A mistyped name costs no file that is no packing."""
+    for ending, ours in ((".liggghts", MADE_BY), (".csv", "x,y,diameter")):
+        path = pathlib.Path(args.out + ending)
+        if not path.exists():
+            continue
+        if path.is_file():
+            with open(path, errors="replace") as file:
+                if ours in file.readline(10000):
+                    continue
+        fail(f"{path} is there and no packing of this tool: it is not overwritten; give another --out, or remove it")
+
+
 def write(args, places, sizes):
-    lines = [f"# {len(sizes)} discs; made by tools/make_packing {' '.join(sys.argv[1:])}"]
+    lines = [f"# {len(sizes)} {MADE_BY} {' '.join(sys.argv[1:])}"]
     for i, ((x, y), d) in enumerate(zip(places, sizes)):
         lines.append(f"create_atoms 1 single {x:.9g} {y:.9g} 0.0 units box")
         lines.append(f"set atom {i + 1} diameter {d:.9g} density ${{disc_density}}")
@@ -186,6 +206,9 @@ def write(args, places, sizes):
 
 def main():
     args = arguments()
+    if args.seed < 0:
+        fail("--seed is a whole number of at least 0")
+    refuse_others(args)
     random = np.random.default_rng(args.seed)
     sizes = diameters(args, random)
     if args.look:
@@ -206,4 +229,10 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except KeyboardInterrupt:
+        print("packing | stopped: interrupted by Ctrl-C", file=sys.stderr)
+        sys.exit(1)
+    except OSError as error:
+        fail(f"{error.filename}: {error.strerror}; give another --out, in a folder that exists")

@@ -7,6 +7,7 @@ import re
 import subprocess
 
 from launch import CASES, ROOT, environment
+from output_folder import mark
 
 OUT = ROOT / "out" / "report"
 BIN = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
@@ -51,7 +52,7 @@ def is_coupled(scene):
 def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0, ranks=1):
     """Runs a scene of cases/, or in a folder elsewhere, with an overlay, unless it has been, the fluid on some ranks.
     Returns exit code and the last error line."""
-    folder.mkdir(parents=True, exist_ok=True)
+    mark(folder, scene)  # lbm writes into no folder of others, and this one holds an overlay already
     text, done = toml(overlay), folder / "row.json"
     if not again and done.exists():
         kept = json.loads(done.read_text())
@@ -60,7 +61,7 @@ def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0, ranks=
     (folder / "overlay.toml").write_text(text)
     paths = [str(CASES / scene / f) for f in ("scene.toml", *files)] + [str(folder / "overlay.toml")]
     line = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(ranks), str(BIN / "lbm"), *paths, "--out", str(folder),
-            "--progress", "none"]
+            "--force", "--progress", "none"]
     if is_coupled(scene):
         line += [":", "-np", "1", str(BIN / "liggghts"), "-in", str(CASES / scene / "in.liggghts"), "-log",
                  str(folder / "liggghts.log"), "-screen", "none", "-var", "out_folder", str(folder)]

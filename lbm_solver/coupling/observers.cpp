@@ -69,7 +69,7 @@ bool Observers::draws_at(std::int64_t interval) const {
 std::int64_t Observers::next_look(std::int64_t interval) const {
   if (obstacles_) return interval;  // their loads are summed in each
   const auto due = [&](double time) {
-    return static_cast<std::int64_t>(std::ceil(time / plan_.interval() - 1e-9));
+    return static_cast<std::int64_t>(std::min(std::ceil(time / plan_.interval() - 1e-9), 1e15));
   };
   std::int64_t next = (interval + guard_every_ - 1) / guard_every_ * guard_every_;
   if (!scene_.output.points.empty()) next = std::min(next, due(next_probe_));
@@ -91,7 +91,8 @@ void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Partic
   }
   if (draws_at(interval)) {
     write_fields(time, fluid, particles);
-    while (next_field_ <= time) next_field_ += scene_.output.fields_every;
+    while (next_field_ <= time)
+      next_field_ += std::max(scene_.output.fields_every, plan_.interval());
   }
   if (seconds_since(last_progress_) > kProgressSeconds || intervals_done_ == plan_.intervals)
     report_progress(interval, particles);

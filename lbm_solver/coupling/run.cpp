@@ -38,14 +38,15 @@ Summary summarise(const Scene& scene, const RunOptions& options, const Fluid& fl
   return summary;
 }
 
-/// Grid and steps that a checkpoint belongs to.
+/// Grid and steps that a checkpoint belongs to. Of the step, what it was before it was fitted to an
+/// end time, which may be another one when the run goes on.
 std::vector<double> identity(const Plan& plan) {
   const auto& p = plan.kernel.parameters;
   return {static_cast<double>(plan.domain.nx),
           static_cast<double>(plan.domain.ny),
           static_cast<double>(plan.domain.nz),
           plan.kernel.precision == Precision::Single ? 1.0 : 0.0,
-          plan.units.dt,
+          plan.wished_step,
           p.tau,
           static_cast<double>(plan.fluid_steps),
           static_cast<double>(plan.substeps)};
@@ -58,6 +59,7 @@ void save(const std::string& path, const Plan& plan, const Decomposition& ranks,
   if (ranks.rank() != 0) return;
   state["identity"] = identity(plan);
   state["interval"] = {static_cast<double>(interval)};
+  state["step"] = {plan.units.dt};
   write_checkpoint(path, state);
 }
 
@@ -73,7 +75,8 @@ State load(const std::string& path, const Plan& plan, const Decomposition& ranks
 
 std::int64_t checkpoint_intervals(const Scene& scene, const Plan& plan) {
   if (scene.checkpoint_every <= 0.0) return 0;
-  return std::max<std::int64_t>(1, std::llround(scene.checkpoint_every / plan.interval()));
+  const double intervals = std::min(scene.checkpoint_every / plan.interval(), 1e15);
+  return std::max<std::int64_t>(1, std::llround(intervals));
 }
 
 /// Where a coupled run begins; checks that the solid has its part of the checkpoint.
@@ -260,6 +263,27 @@ class CoupledRun {
 
 }  // namespace
 
+std::optional<double> step_to_keep(const Scene& scene, const RunOptions& options) {
+  if (options.restart.empty()) return std::nullopt;
+  if (options.restart == "fault" && !scene.coupling)
+    throw InputError(options.out + "/fault.h5", "is kept by coupled runs only",
+                     "use --restart for the last checkpoint");
+  const std::string path = options.out + "/" + options.restart + ".h5";
+  const std::vector<double> step = read_checkpoint_array(path, "step");
+  if (step.size() == 1 && std::isfinite(step[0]) && step[0] > 0.0) return step[0];
+  throw InputError(path, "holds no time step: it is damaged, or of an earlier version",
+                   "start again without --restart");
+}
+
+void check_until(const Scene& scene, const RunOptions& options) {
+  if (!options.until) return;
+  const double until = *options.until;
+  if (std::isfinite(until) && until > 0.0 && until <= scene.end_time * (1.0 + 1e-9)) return;
+  throw InputError(fmt::format("--until = {} s", until),
+                   fmt::format("is no time of the scene, which ends at {} s", scene.end_time),
+                   "give a time above 0 and up to its end, or raise run.end_time");
+}
+
 Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                     protocol::Channel& channel, const RunOptions& options, Log& log) {
   return CoupledRun(scene, plan, ranks, channel, options, log).run();
@@ -267,9 +291,6 @@ Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& r
 
 Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                   const RunOptions& options, Log& log) {
-  if (options.restart == "fault")
-    throw InputError(options.out + "/fault.h5", "is kept by coupled runs only",
-                     "use --restart for the last checkpoint");
   const std::string checkpoint = options.out + "/checkpoint.h5";
   Fluid fluid = make_fluid(scene, plan, ranks);
   State state;

@@ -22,6 +22,13 @@ struct RunOptions {
 Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                     protocol::Channel& channel, const RunOptions& options, Log& log);
 
+/// Step of the run that a restart goes on from [s]; nothing where it does not.
+/// @throws InputError  there is no such checkpoint
+std::optional<double> step_to_keep(const Scene& scene, const RunOptions& options);
+
+/// Refuses an `until` that is no time of the scene. @throws InputError
+void check_until(const Scene& scene, const RunOptions& options);
+
 /// Runs a scene without a solid program.
 Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                   const RunOptions& options, Log& log);

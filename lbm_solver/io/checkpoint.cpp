@@ -9,6 +9,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "protocol/hdf5_file.h"
+#include "protocol/input_file.h"
 
 namespace lbm {
 
@@ -47,27 +48,37 @@ herr_t collect(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
+Handle open_checkpoint(const std::string& path) {
+  if (const std::string problem = protocol::why_unreadable(path); !problem.empty())
+    throw InputError(path,
+                     std::filesystem::exists(path) ? problem : "no checkpoint to restart from",
+                     "run first with run.checkpoint_every in the scene, and the same --out");
+  return protocol::hdf5::open_file(path, Open::Read);
+}
+
+std::vector<double> read_array(hid_t file, const std::string& name) {
+  const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + name);
+  std::vector<double> values(protocol::hdf5::size_that_fits(set, sizeof(double), name));
+  check(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        "read " + name);
+  return values;
+}
+
 }  // namespace
 
 State read_checkpoint(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path))
-    throw InputError(path, "no checkpoint to restart from",
-                     "run first with run.checkpoint_every in the scene, and the same --out");
-  const Handle file = protocol::hdf5::open_file(path, Open::Read);
+  const Handle file = open_checkpoint(path);
   std::vector<std::string> names;
   check(H5Literate(file, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names), "list " + path);
   State state;
-  for (const std::string& name : names) {
-    const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + name);
-    const Handle space(H5Dget_space(set), H5Sclose, "read a space");
-    hsize_t size = 0;
-    check(H5Sget_simple_extent_dims(space, &size, nullptr), "read the size of " + name);
-    auto& values = state[name];
-    values.resize(size);
-    check(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-          "read " + name);
-  }
+  for (const std::string& name : names) state[name] = read_array(file, name);
   return state;
+}
+
+std::vector<double> read_checkpoint_array(const std::string& path, const std::string& name) {
+  const Handle file = open_checkpoint(path);
+  if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) return {};
+  return read_array(file, name);
 }
 
 }  // namespace lbm

@@ -16,4 +16,7 @@ void write_checkpoint(const std::string& path, const State& state);
 /// @throws InputError where the file is missing or no checkpoint
 State read_checkpoint(const std::string& path);
 
+/// One array of a checkpoint. @throws InputError where there is no checkpoint
+std::vector<double> read_checkpoint_array(const std::string& path, const std::string& name);
+
 }  // namespace lbm

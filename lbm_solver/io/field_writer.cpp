@@ -62,7 +62,11 @@ FieldWriter::FieldWriter(const std::string& folder, const Units& units, int dime
 /// @return false where they cannot be read: a kill while a frame was being written; they are put
 /// aside
 bool FieldWriter::keep_frames(double until) {
-  const std::string path = folder_ + "/fields.h5", aside = folder_ + "/fields-cut-off.h5";
+  const std::string path = folder_ + "/fields.h5";
+  std::string aside = folder_ + "/fields-cut-off.h5";
+  for (int k = 2; std::filesystem::exists(aside); ++k)  // each kill may leave one
+    aside = fmt::format("{}/fields-cut-off-{}.h5", folder_, k);
+  if (!std::filesystem::exists(path)) return false;
   Handle file;
   try {
     file = protocol::hdf5::open_file(path, Open::Append);

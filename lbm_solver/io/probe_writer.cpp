@@ -2,6 +2,7 @@
 #include "lbm_solver/io/probe_writer.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -13,19 +14,24 @@
 
 namespace lbm {
 
-CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double keep_until) {
+CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double keep_until)
+    : path_(path) {
   std::vector<std::string> kept;
   if (keep_until > 0.0) {
     std::ifstream before(path);
     std::string line;
-    std::getline(before, line);  // the columns
-    while (std::getline(before, line))
+    std::getline(before, line);                          // the columns
+    while (std::getline(before, line) && !before.eof())  // not a line that a kill has cut off
       if (std::strtod(line.c_str(), nullptr) < keep_until) kept.push_back(line);
   }
-  file_.reset(std::fopen(path.c_str(), "w"));
+  // under another name, or a kill at this moment would lose the lines of the run before
+  const std::string part = path + ".part";
+  file_.reset(std::fopen(part.c_str(), "w"));
   if (!file_) throw InputError(path, "cannot be written", "choose another --out");
   fmt::print(file_.get(), "{}\n", columns);
   for (const std::string& line : kept) fmt::print(file_.get(), "{}\n", line);
+  if (std::fflush(file_.get()) != 0 || std::rename(part.c_str(), path.c_str()) != 0)
+    throw protocol::ProtocolError(path + " cannot be written; is the disk full?");
 }
 
 void CsvWriter::row(std::initializer_list<double> values) {
@@ -35,6 +41,16 @@ void CsvWriter::row(std::initializer_list<double> values) {
     separator = ",";
   }
   fmt::print(file_.get(), "\n");
+}
+
+void CsvWriter::flush() {
+  struct stat status {};
+  if (std::fflush(file_.get()) != 0 || std::ferror(file_.get()))
+    throw protocol::ProtocolError(path_ + " cannot be written; is the disk full?");
+  if (fstat(fileno(file_.get()), &status) == 0 && status.st_nlink > 0) return;
+  throw protocol::ProtocolError(path_ +
+                                " was deleted while the run was writing it; start the run again, "
+                                "and leave its folder alone until it has ended");
 }
 
 ProbeWriter::ProbeWriter(const std::string& folder, int dimension, double keep_until)

@@ -19,12 +19,15 @@ class CsvWriter {
   /// @param keep_until  a run that goes on keeps the lines before this time
   CsvWriter(const std::string& path, const std::string& columns, double keep_until = 0.0);
   void row(std::initializer_list<double> values);
-  void flush() { std::fflush(file_.get()); }
+  /// @throws ProtocolError  what was written is lost: the disk is full, or somebody has deleted the
+  /// file meanwhile, which the system would go on writing without a word
+  void flush();
 
  private:
   struct Close {
     void operator()(std::FILE* f) const { std::fclose(f); }
   };
+  std::string path_;
   std::unique_ptr<std::FILE, Close> file_;
 };
 

@@ -4,19 +4,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
+#include "protocol/input_file.h"
 
 namespace lbm {
 namespace {
 
+constexpr std::uintmax_t kLargestScene = 16'000'000, kLargestTable = 256'000'000;  // bytes
+
 toml::table parse(const std::string& file) {
-  if (!std::filesystem::is_regular_file(file))
-    throw InputError(file, "no such file",
+  if (const auto problem = protocol::why_unreadable(file, kLargestScene); !problem.empty())
+    throw InputError(file, problem,
                      "give the path of a scene, e.g. cases/settling_disc/scene.toml");
   try {
     return toml::parse_file(file);
@@ -108,6 +113,19 @@ NumericsScene read_numerics(TableReader t, int d) {
   return n;
 }
 
+std::map<std::string, std::string> read_variables(TableReader t) {
+  std::map<std::string, std::string> variables = t.all_as_text();
+  for (const auto& [name, value] : variables) {
+    if (is_reserved_variable(name))
+      t.fail(name, "is a name that the programs give a value of their own",
+             "choose another name; lbm check --liggghts-vars lists those that are taken");
+    if (const auto problem = why_no_variable(name, value); !problem.empty())
+      t.fail(name, "= \"" + value + "\" " + problem,
+             "a script variable is a word of letters, digits and _, and a number or a text");
+  }
+  return variables;
+}
+
 ParticleScene read_particles(TableReader t, int d) {
   ParticleScene p;
   p.diameter = t.range("diameter", Bounds::positive(), "m");
@@ -115,7 +133,7 @@ ParticleScene read_particles(TableReader t, int d) {
   p.hydraulic_ratio = t.numbers_or("hydraulic_ratio", p.hydraulic_ratio, {0.1, 1.0}, "");
   p.start = t.vectors_or_none("start", d, "[m]");
   p.contact_stiffness = t.optional_number("contact_stiffness", Bounds::positive(), "N/m");
-  p.variables = t.optional_table("variables").all_as_text();
+  p.variables = read_variables(t.optional_table("variables"));
   t.finish();
   return p;
 }
@@ -219,13 +237,15 @@ void read_grains(TableReader t, const std::string& scene_file, int d,
   t.finish();
   if (name.empty()) return;
   const auto path = std::filesystem::path(scene_file).parent_path() / name;
+  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
+    t.fail("file", "= \"" + name + "\": " + problem, "put a table of grains beside the scene");
   std::ifstream table(path);
-  if (!table) t.fail("file", "= \"" + name + "\" cannot be read", "put it beside the scene");
   std::string line;
   std::getline(table, line);
   const std::string columns = d == 2 ? "x,y,diameter" : "x,y,z,diameter";
+  const auto beginning = [&line] { return line.size() > 60 ? line.substr(0, 60) + "…" : line; };
   if (line != columns)
-    t.fail("file", "begins with '" + line + "'", "the first line is " + columns + " (in m)");
+    t.fail("file", "begins with '" + beginning() + "'", "the first line is " + columns + " (in m)");
   for (int number = 2; std::getline(table, line); ++number) {
     ObstacleScene o;
     o.round = o.grain = true;
@@ -234,8 +254,11 @@ void read_grains(TableReader t, const std::string& scene_file, int d,
     const int read =
         d == 2 ? std::sscanf(line.c_str(), "%lf,%lf,%lf%c", v, v + 1, v + 3, &rest)
                : std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf%c", v, v + 1, v + 2, v + 3, &rest);
-    if (read != d + 1 || !(v[3] > 0.0))
-      t.fail("file", fmt::format("line {}: '{}' is not {} numbers", number, line, d + 1),
+    const bool finite = std::isfinite(v[0] + v[1] + v[2] + v[3]);
+    if (read != d + 1 || !finite || !(v[3] > 0.0))
+      t.fail("file",
+             fmt::format("line {}: '{}' is not {} finite numbers, the last of them positive",
+                         number, beginning(), d + 1),
              "give " + columns + " in m");
     o.centre = {v[0], v[1], v[2]};
     o.diameter = v[3];

@@ -84,15 +84,20 @@ void choose_step(const Scene& s, Plan& plan) {
   }
 }
 
-/// Rounds the step down so that the end time is a whole number of intervals.
-void fit_to_end(const Scene& s, Plan& plan) {
-  const double wished = plan.units.dx / plan.lattice_speed;
-  const double intervals = std::ceil(s.end_time / (wished * plan.fluid_steps) - 1e-9);
+/// Rounds the step down so that the end time is a whole number of intervals. A run that goes on has
+/// its step already: rounded to another end time it would be another one, and the states of the
+/// checkpoint, in lattice units, would mean another flow. It ends with the interval that reaches
+/// the end time.
+void fit_to_end(const Scene& s, std::optional<double> given, Plan& plan) {
+  plan.wished_step = plan.units.dx / plan.lattice_speed;
+  const double wished = given.value_or(plan.wished_step);
+  const double whole = s.end_time / (wished * plan.fluid_steps);
+  const double intervals = std::ceil(whole * (1.0 - 1e-12) - 1e-9);
   if (intervals > 1e12)
     throw InputError(s.file + ": run.end_time", fmt::format("needs {:.2g} steps", intervals),
                      "take a coarser cell, a smaller velocity scale or an earlier end");
   plan.intervals = std::max<std::int64_t>(1, static_cast<std::int64_t>(intervals));
-  plan.units.dt = s.numerics.time_step
+  plan.units.dt = s.numerics.time_step || given
                       ? wished
                       : s.end_time / (static_cast<double>(plan.intervals) * plan.fluid_steps);
   plan.lattice_speed = plan.units.dx / plan.units.dt;
@@ -268,7 +273,7 @@ double particle_volume(const Scene& s, double diameter) {
                               : 4.0 / 3.0 * std::numbers::pi * r * r * r;
 }
 
-Plan make_plan(const Scene& s) {
+Plan make_plan(const Scene& s, std::optional<double> step) {
   Plan plan;
   check_places(s);
   const double dx = cell_size(s);
@@ -284,7 +289,7 @@ Plan make_plan(const Scene& s) {
   if (s.particles) plan.cells_per_diameter = s.particles->diameter.lo / dx;
   if (s.coupling) plan.fluid_steps = s.coupling->fluid_steps;
   choose_step(s, plan);
-  fit_to_end(s, plan);
+  fit_to_end(s, step, plan);
   choose_kernel(s, plan);
   judge_step(s, plan);
   if (s.coupling) choose_substeps(s, plan);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Plan {
   int fluid_steps = 1;         ///< a coupling interval
   int substeps = 1;            ///< solid steps a coupling interval
 
+  double wished_step = 0.0;    ///< dt before it was fitted to the end time [s]
   double lattice_speed = 0.0;  ///< C = dx/dt [m/s]
   double u_over_c = 0.0;       ///< velocity scale / C, the papers' Mach number
   double reynolds = 0.0;       ///< with the smallest particle, a disc at rest, or the box's width
@@ -45,8 +47,11 @@ double particle_volume(const Scene& scene, double diameter);
 /// Step rule: C = max(10 velocity_scale, √(3 Δp/(rho 0.03)), 3 nu/dx); the last keeps tau <= 1.5.
 /// Collision "auto": TRT with covered cells by resistance while Re_h <= 5, central moments with
 /// Noble–Torczynski above.
+/// @param step  of the run that it goes on from [s]: a restart keeps it, whatever its end time;
+/// else
+///              it is rounded down so that the end time is a whole number of intervals
 /// @throws InputError
-Plan make_plan(const Scene& scene);
+Plan make_plan(const Scene& scene, std::optional<double> step = std::nullopt);
 
 /// A fluid as a scene wants it: boundaries and obstacles in place, initial state set.
 Fluid make_fluid(const Scene& scene, const Plan& plan, const Decomposition& ranks);

@@ -5,6 +5,7 @@
 #include <error.h>
 #include <fmt/format.h>
 #include <force.h>
+#include <sys/stat.h>
 #include <update.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include "liggghts_coupling/bond/arguments.h"
 #include "liggghts_coupling/bond/bond_book.h"
 
 namespace dem {
@@ -26,7 +28,7 @@ std::string kept_lines(const std::string& path, long before) {
   std::ifstream file(path);
   std::string line, kept;
   std::getline(file, line);
-  while (std::getline(file, line)) {
+  while (std::getline(file, line) && !file.eof()) {  // not a line that a kill has cut off
     long step = 0;
     if (std::istringstream(line) >> step && step <= before) kept += line + "\n";
   }
@@ -50,7 +52,7 @@ FixBondBreaks::FixBondBreaks(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
   for (int k = 3; k + 1 < narg; k += 2) {
     const std::string word = arg[k];
     if (word == "every")
-      nevery = force->inumeric(FLERR, arg[k + 1]);
+      nevery = argument<int>(error, this, word, arg[k + 1]);
     else if (word == "file")
       path_ = arg[k + 1];
     else
@@ -71,13 +73,17 @@ void FixBondBreaks::init() {
 void FixBondBreaks::open() {
   const std::string kept =
       update->ntimestep > 0 ? kept_lines(path_, static_cast<long>(update->ntimestep)) : "";
-  file_.reset(std::fopen(path_.c_str(), "w"));
+  // under another name, or a kill at this moment would lose the lines of the run before
+  const std::string part = path_ + ".part";
+  file_.reset(std::fopen(part.c_str(), "w"));
   if (!file_)
     error->one(FLERR, ("fix bond/breaks: " + path_ +
                        " cannot be written; give a file in a folder that exists")
                           .c_str());
   std::fputs((kColumns + kept).c_str(), file_.get());
-  std::fflush(file_.get());
+  if (std::fflush(file_.get()) != 0 || std::rename(part.c_str(), path_.c_str()) != 0)
+    error->one(FLERR,
+               ("fix bond/breaks: " + path_ + " cannot be written; is the disk full?").c_str());
 }
 
 void FixBondBreaks::end_of_step() {
@@ -101,9 +107,16 @@ void FixBondBreaks::write() {
   std::sort(all.begin(), all.end(), [](const BreakEvent& a, const BreakEvent& b) {
     return std::tuple(a.step, a.first, a.second) < std::tuple(b.step, b.first, b.second);
   });
-  if (all.empty()) return;
+  if (!file_) return;
   for (const BreakEvent& e : all) std::fputs(text(e).c_str(), file_.get());
-  std::fflush(file_.get());
+  struct stat status {};
+  const bool written = std::fflush(file_.get()) == 0 && !std::ferror(file_.get());
+  if (written && fstat(fileno(file_.get()), &status) == 0 && status.st_nlink > 0) return;
+  error->one(FLERR, fmt::format("fix bond/breaks: {} {}", path_,
+                                written ? "was deleted while the run was writing it; start the "
+                                          "run again, and leave its folder alone until it has ended"
+                                        : "cannot be written; is the disk full?")
+                        .c_str());
 }
 
 void FixBondBreaks::check_counts() {

@@ -14,8 +14,10 @@
 #include <fstream>
 #include <limits>
 
+#include "liggghts_coupling/bond/arguments.h"
 #include "liggghts_coupling/bond/bond_book.h"
 #include "liggghts_coupling/bond/pair_property.h"
+#include "protocol/input_file.h"
 
 namespace dem {
 namespace {
@@ -39,12 +41,13 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     };
     if (word == "gap") {
       need(1);
-      request.gap = force->numeric(FLERR, arg[k + 1]);
+      request.gap = argument<double>(error, this, word, arg[k + 1]);
       gap = true;
       k += 2;
     } else if (word == "types") {
       need(2);
-      request.types = {force->inumeric(FLERR, arg[k + 1]), force->inumeric(FLERR, arg[k + 2])};
+      request.types = {argument<int>(error, this, word, arg[k + 1]),
+                       argument<int>(error, this, word, arg[k + 2])};
       k += 3;
     } else if (word == "list") {
       need(1);
@@ -53,13 +56,13 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
       k += 2;
     } else if (word == "spread") {
       need(1);
-      book.spread = force->numeric(FLERR, arg[k + 1]);
+      book.spread = argument<double>(error, this, word, arg[k + 1]);
       if (book.spread < 0.0 || book.spread >= 1.0)
         error->fix_error(FLERR, this, "spread is at least 0 and below 1");
       k += 2;
     } else if (word == "seed") {
       need(1);
-      book.seed = static_cast<unsigned long>(force->inumeric(FLERR, arg[k + 1]));
+      book.seed = static_cast<unsigned long>(argument<int>(error, this, word, arg[k + 1]));
       k += 2;
     } else {
       error->fix_error(
@@ -73,8 +76,12 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
 }
 
 std::set<std::pair<long, long>> FixBondCreate::read_list(const char* path) {
+  constexpr std::uintmax_t largest = 1'000'000'000;  // bytes: 5e7 pairs
+  if (const auto problem = protocol::why_unreadable(path, largest); !problem.empty())
+    error->fix_error(
+        FLERR, this,
+        fmt::format("list {}: {}; give a file of two ids a line", path, problem).c_str());
   std::ifstream file(path);
-  if (!file) error->fix_error(FLERR, this, (std::string(path) + " cannot be read").c_str());
   std::set<std::pair<long, long>> listed;
   for (long a = 0, b = 0; file >> a >> b;) listed.emplace(std::min(a, b), std::max(a, b));
   if (!file.eof())

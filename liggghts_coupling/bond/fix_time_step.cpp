@@ -14,6 +14,7 @@
 #include <limits>
 #include <string>
 
+#include "liggghts_coupling/bond/arguments.h"
 #include "liggghts_coupling/bond/pair_property.h"
 #include "liggghts_coupling/bond/time_step_limits.h"
 
@@ -24,15 +25,15 @@ FixTimeStep::FixTimeStep(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg) : Fix(
   for (int k = 3; k < narg;) {
     const std::string word = arg[k];
     if (word == "lambda" && k + 1 < narg) {
-      lambda_ = force->numeric(FLERR, arg[k + 1]);
+      lambda_ = argument<double>(error, this, word, arg[k + 1]);
       lambda = true;
       k += 2;
     } else if (word == "fit" && k + 1 < narg) {
-      interval_ = force->numeric(FLERR, arg[k + 1]);
+      interval_ = argument<double>(error, this, word, arg[k + 1]);
       k += 2;
     } else if (word == "elastic" && k + 2 < narg) {
-      shear_modulus_ = force->numeric(FLERR, arg[k + 1]);
-      poisson_ratio_ = force->numeric(FLERR, arg[k + 2]);
+      shear_modulus_ = argument<double>(error, this, word, arg[k + 1]);
+      poisson_ratio_ = argument<double>(error, this, word, arg[k + 2]);
       k += 3;
     } else {
       error->fix_error(FLERR, this, "expects 'lambda L [fit INTERVAL] [elastic G NU]'");

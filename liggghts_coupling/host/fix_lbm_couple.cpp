@@ -14,6 +14,7 @@
 #include "liggghts_coupling/bond/bond_book.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/solid_hello.h"
+#include "protocol/numbers.h"
 #include "protocol/program.h"
 #include "protocol/trace.h"
 
@@ -59,17 +60,22 @@ void FixLbmCouple::parse(int narg, char** arg) {
   for (int i = 3; i < narg; i += 2) {
     const std::string key = arg[i];
     if (i + 1 == narg) fail("'" + key + "' has no value" + usage);
-    if (key == "every")
-      substeps_ = std::atoi(arg[i + 1]);
-    else if (key == "timeout")
-      timeout_ = std::atof(arg[i + 1]);
-    else if (key == "record")
-      record_ = arg[i + 1];
-    else
+    const std::string value = arg[i + 1];
+    if (key == "every") {
+      substeps_ = protocol::to_number<int>(value).value_or(0);
+      if (substeps_ < 1)
+        fail("'every " + value + "': give a whole number of at least 1, e.g. ${substeps}" + usage);
+    } else if (key == "timeout") {
+      timeout_ = protocol::to_number<double>(value).value_or(0.0);
+      if (!(timeout_ > 0.0))
+        fail("'timeout " + value + "': give a positive number of seconds" + usage);
+    } else if (key == "record") {
+      record_ = value;
+    } else {
       fail("'" + key + "' is no keyword" + usage);
+    }
   }
-  if (substeps_ < 1) fail("'every' must be a whole number of at least 1, e.g. ${substeps}" + usage);
-  if (!(timeout_ > 0.0)) fail("'timeout' must be a positive number of seconds" + usage);
+  if (substeps_ < 1) fail("lacks 'every N'" + usage);
 }
 
 void FixLbmCouple::begin_recording() const {

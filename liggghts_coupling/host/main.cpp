@@ -21,6 +21,7 @@
 #include "liggghts_coupling/host/mpi_guards.h"
 #include "liggghts_coupling/host/register_styles.h"
 #include "liggghts_coupling/host/script_names.h"
+#include "protocol/input_file.h"
 #include "protocol/program.h"
 
 namespace dem {
@@ -62,20 +63,23 @@ void add_defaults(Arguments& arguments) {
     if (!defines(arguments, name)) arguments.insert(arguments.end(), {"-var", name, value});
 }
 
-/// What the fluid offers becomes a script variable, unless the command line has its own.
+/// What the fluid offers becomes a script variable, unless the command line has its own. Where the
+/// script includes files from is no matter of the fluid's.
 void add_offered_variables(Arguments& arguments, const protocol::Hello& fluid) {
   Arguments added;
   for (const auto& v : fluid.variables)
-    if (!defines(arguments, v.name)) added.insert(added.end(), {"-var", v.name, v.value});
+    if (v.name != "scene_folder" && !defines(arguments, v.name))
+      added.insert(added.end(), {"-var", v.name, v.value});
   arguments.insert(arguments.end(), added.begin(), added.end());
 }
 
 void check_script(const Arguments& arguments) {
   const std::string script = option(arguments, "-in", "-i");
-  if (script.empty() || std::filesystem::is_regular_file(script)) return;
+  const std::string problem = script.empty() ? "" : protocol::why_unreadable(script);
+  if (problem.empty()) return;
   throw protocol::ProtocolError(
-      fmt::format("{}: no such script; give -in FILE, or start in a folder with in.liggghts",
-                  script),
+      fmt::format("{}: {}; give -in SCRIPT, or start in a folder with in.liggghts", script,
+                  problem),
       protocol::kBadInput);
 }
 

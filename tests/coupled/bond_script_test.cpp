@@ -58,6 +58,13 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"exponent", "ledger on", "exponent 2", "exponent is 1 (linear) or 1.5 (Hertz)"},
         Refused{"gap", "bond/create gap 1e-6", "bond/create types 1 1", "needs 'gap G'"},
         Refused{"word", "bond/create gap 1e-6", "bond/create gap 1e-6 glue 3", "knows no 'glue'"},
+        Refused{"number", "gap 1e-6", "gap 1.2.3", "'gap 1.2.3': give a number"},
+        Refused{"whole", "every 100 file", "every 100x file", "'every 100x': give a whole number"},
+        Refused{"pipe", "fix make all bond/create gap 1e-6",
+                "shell mkfifo pipe\nfix make all bond/create gap 1e-6 list pipe",
+                "list pipe: is no regular file (a pipe or a device?)"},
+        Refused{"deleted", "run 2500\n", "run 200\nshell rm breaks.csv\nrun 200\n",
+                "breaks.csv was deleted while the run was writing it"},
         Refused{"file", "every 100 file breaks.csv", "every 100 file no/such/folder.csv",
                 "cannot be written"}),
     [](const auto& info) { return info.param.name; });

@@ -103,7 +103,7 @@ TEST(BadInput, MissingSceneFile) {
 TEST(BadInput, MissingScript) {
   SettlingDisc scene;
   expect_end(scene.run("", 1, 30.0, "-in nowhere.liggghts"), 2,
-             {"liggghts | error | nowhere.liggghts: no such script",
+             {"liggghts | error | nowhere.liggghts: no such file",
               "lbm | error | the solid program stopped"});
 }
 

@@ -183,11 +183,15 @@ void expect_error(const JobResult& job, const std::string& words, int exit_code 
 
 TEST_F(FixTest, WrongUseIsNamed) {
   expect_error(couple(script("fix couple all lbm/couple every 0")),
-               "'every' must be a whole number");
+               "'every 0': give a whole number of at least 1");
+  expect_error(couple(script("fix couple all lbm/couple every 10x")),
+               "'every 10x': give a whole number");
+  expect_error(couple(script("fix couple all lbm/couple every 10 timeout 3s")),
+               "'timeout 3s': give a positive number of seconds");
   expect_error(couple(script("fix couple all lbm/couple evry 10")), "'evry' is no keyword");
   expect_error(couple(script("fix couple all lbm/couple every")), "'every' has no value");
   expect_error(couple(script("fix couple all lbm/couple every 10 timeout -3")),
-               "'timeout' must be");
+               "'timeout -3': give a positive number");
   expect_error(couple(script("fix flat0 all enforce2d\nfix couple all lbm/couple every 10")),
                "must stand before fix flat0 enforce2d");
   expect_error(

@@ -61,6 +61,17 @@ TEST_F(RestartTest, KilledAtSeveralMomentsItEndsLikeARunThatWasNot) {
   EXPECT_EQ(frames.output.substr(0, 32), frames.output.substr(36, 32)) << frames.output;
 }
 
+TEST_F(RestartTest, ALineThatAKillHasCutOffIsLeftOut) {
+  folder_.write("scene.toml", scene("checkpoint_every = 0.5"));
+  ASSERT_EQ(run("--out whole").exit_code, 0);
+  ASSERT_EQ(run("--out cut --until 2").exit_code, 0);
+  const std::string cut = file("cut/points.csv") + "0.", name = folder_.path() + "/cut/points.csv";
+  folder_.write("cut/points.csv", cut);
+  ASSERT_EQ(run("--out cut --restart").exit_code, 0);
+  EXPECT_EQ(file("cut/points.csv"), file("whole/points.csv"));
+  EXPECT_FALSE(std::filesystem::exists(name + ".part"));
+}
+
 TEST_F(RestartTest, SaysWhatIsWrong) {
   folder_.write("scene.toml", scene("checkpoint_every = 0.5"));
   auto job = run("--out nothing --restart");

@@ -110,11 +110,21 @@ TEST_F(TraceTest, SaysWhatIsWrongWithAFile) {
     }
     return "no complaint";
   };
-  EXPECT_NE(complaint(file("none.h5")).find("No such file"), std::string::npos);
+  EXPECT_NE(complaint(file("none.h5")).find("no such file"), std::string::npos);
   folder_.write("text.h5", "this is no HDF5 file");
   EXPECT_NE(complaint(file("text.h5")).find("text.h5"), std::string::npos);
   { const auto other = hdf5::open_file(file("other.h5"), hdf5::Open::Create); }
   EXPECT_NE(complaint(file("other.h5")).find("no trace"), std::string::npos);
+  make("long.h5");
+  {  // what is not stored counts as zeros: the file stays small, and would not fit into any memory
+    const auto damaged = hdf5::open_file(file("long.h5"), hdf5::Open::Append);
+    const hdf5::Handle table(H5Dopen2(damaged, "bytes", H5P_DEFAULT), H5Dclose, "open");
+    const hsize_t size = 1'000'000'000'000'000;
+    hdf5::check(H5Dset_extent(table, &size), "grow");
+  }
+  EXPECT_NE(complaint(file("long.h5")).find("is damaged: bytes claims 1000000000000000 rows"),
+            std::string::npos)
+      << complaint(file("long.h5"));
 }
 
 }  // namespace

@@ -62,10 +62,22 @@ class Packing(unittest.TestCase):
         self.assertNotEqual(texts[0], texts[2])
 
     def test_refusals(self):
-        for more, word in ((["--fraction", "0.95"], "cannot all fit"), (["--count", "900"], "cannot all fit")):
+        for more, word in ((["--fraction", "0.95"], "cannot all fit"), (["--count", "900"], "cannot all fit"),
+                           (["--fraction", "nan"], "finite"), (["--count", "0"], "at least 1"), (["--seed", "-1"], "--seed"),
+                           (["--box", "0", "nan", "0", "1"], "finite"), (["--overlap", "0"], "positive")):
             job = make(self.folder.name, *more)
             self.assertEqual(job.returncode, 2)
             self.assertIn(word, job.stderr)
+
+    def test_another_file_of_that_name_is_not_overwritten(self):
+        for name, text in (("p.csv", "my own table\n"), ("p.liggghts", "# my own script\n")):
+            path = pathlib.Path(self.folder.name, name)
+            path.write_text(text)
+            job = make(self.folder.name, "--count", "10")
+            self.assertEqual(job.returncode, 2)
+            self.assertIn(f"{name} is there and no packing", job.stderr)
+            self.assertEqual(path.read_text(), text)
+            path.unlink()
 
     def test_liggghts_reads_and_bonds_it(self):
         self.assertEqual(make(self.folder.name, "--fraction", "0.8", "--periodic", "x").returncode, 0)

@@ -20,6 +20,7 @@
 #include <string>
 
 #include "protocol/file_catcher.h"
+#include "protocol/numbers.h"
 
 namespace engine {
 
@@ -34,11 +35,17 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     : Fix(lammps, narg, arg) {
   const bool with_gravity = narg == 9 && std::string(arg[5]) == "gravity";
   if (!(narg == 5 || with_gravity) || std::string(arg[3]) != "every" ||
-      (substeps_ = std::atoi(arg[4])) < 1)
+      (substeps_ = protocol::to_number<int>(arg[4]).value_or(0)) < 1)
     error->all(FLERR, std::string("fix lbm/couple: usage: fix ID group lbm/couple every N [gravity "
                                   "GX GY GZ]"));
   if (with_gravity)
-    for (int k = 0; k < 3; ++k) gravity_[k] = std::atof(arg[6 + k]);
+    for (int k = 0; k < 3; ++k) {
+      const auto g = protocol::to_number<double>(arg[6 + k]);
+      if (!g)
+        error->all(FLERR, std::string("fix lbm/couple: gravity: '") + arg[6 + k] +
+                              "' is no number; give three, in m/s²");
+      gravity_[k] = *g;
+    }
   nevery = 1;
   create_attribute = 1;
   grow_arrays(atom->nmax);

@@ -14,6 +14,7 @@
 
 #include "protocol/codec.h"
 #include "protocol/mpi_channel.h"
+#include "protocol/numbers.h"
 #include "protocol/program.h"
 #include "protocol/session.h"
 #include "protocol/solid_parts.h"
@@ -32,7 +33,13 @@ class Offer {
     const auto found = values_.find(name);
     if (found == values_.end())
       throw ProtocolError(fmt::format("the fluid offers no variable '{}'", name), kBadInput);
-    return std::stod(found->second);
+    const auto value = to_number<double>(found->second);
+    if (!value)
+      throw ProtocolError(fmt::format("the fluid's variable '{}' = '{}' is no number; correct "
+                                      "[particles.variables] of the scene",
+                                      name, found->second),
+                          kBadInput);
+    return *value;
   }
   double number_or(const std::string& name, double otherwise) const {
     return values_.contains(name) ? number(name) : otherwise;
