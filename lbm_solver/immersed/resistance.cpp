@@ -21,7 +21,7 @@ ResistanceCollision::ResistanceCollision(const std::string& term,
 
 RadiusShift radius_shift(const std::string& solid_term, int dimension) {
   if (!by_resistance(solid_term)) return {};
-  return dimension == 2 ? RadiusShift{-0.02, 0.13} : RadiusShift{-0.02, 0.23};
+  return dimension == 2 ? RadiusShift{-0.02, 0.13} : RadiusShift{-0.005, 0.16};
 }
 
 double load_lag(const std::string& solid_term, double tau) {
