@@ -122,8 +122,7 @@ void Observers::restore(const std::vector<double>& s) {
   if (obstacles_) obstacles_->restore(std::span(s).subspan(5));
 }
 
-void Observers::write_probes(double time, const Fluid& fluid, const Particles* particles,
-                             bool last) {
+void Observers::write_probes(double time, Fluid& fluid, const Particles* particles, bool last) {
   if (particles) {
     const Particles::Everything all = particles->gather();
     if (probes_)

@@ -68,7 +68,7 @@ class Observers {
   void add_bonds(const std::vector<protocol::Particle>& particles,
                  const protocol::BondReport& bonds, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
-  void write_probes(double time, const Fluid& fluid, const Particles* particles, bool last);
+  void write_probes(double time, Fluid& fluid, const Particles* particles, bool last);
   void report_progress(std::int64_t interval, const Particles* particles);
 
   const Scene& scene_;
