@@ -95,7 +95,9 @@ class Particles {
   /// All particles of the box, each once, in the order of their ids.
   struct Everything {
     std::vector<protocol::Particle> particles;
-    std::vector<protocol::Load> loads;  ///< what mean_loads returned last, whole; may be empty
+    /// What mean_loads returned last, whole: of this interval, or of the one before while its own
+    /// are not known yet; 0 for a particle that has just come.
+    std::vector<protocol::Load> loads;
   };
   /// On rank 0; elsewhere empty. Collective.
   Everything gather() const;
@@ -130,6 +132,7 @@ class Particles {
   double virtual_mass(std::size_t i) const;  // over the covered mass
   void add_virtual_mass(std::size_t i, protocol::Load& load) const;
   void share_light();
+  std::vector<protocol::Load> latest_loads() const;
   std::vector<Past> present() const;
 
   Units units_;
@@ -147,8 +150,10 @@ class Particles {
   std::vector<const Past*> before_;  // [particle], null for a new one
   std::vector<Body> bodies_;
   std::vector<BodyLoad> sums_;
-  std::vector<protocol::Load> loads_;  // this rank's parts
-  std::vector<protocol::Load> whole_;  // of all ranks; where virtual masses are about
+  bool loads_known_ = false;                  // of this interval
+  std::vector<protocol::Load> loads_;         // this rank's parts
+  std::vector<protocol::Load> whole_;         // of all ranks; where virtual masses are about
+  std::vector<protocol::Load> loads_before_;  // loads_ of the interval before
   std::optional<protocol::BondReport> bonds_;
 };
 
