@@ -33,10 +33,10 @@ def made_with(run, overlay, dimension):
 
 def load_noise(case, run):
     """Standard deviation and largest departure [%] of the load that is measured, over its mean, in the last quarter of
-    the records; what changes linearly with time is none. Empty where there are few records."""
+    the records (of a particle without the last one, which repeats a load); what changes linearly with time is none. Empty where there are few records."""
     path = run.folder / "obstacles.csv"
     table = read_table(path) if path.exists() else run.probes()
-    mine = table["obstacle"] == table["obstacle"].max() if "obstacle" in table else np.isfinite(table["fy"])
+    mine = table["obstacle"] == table["obstacle"].max() if "obstacle" in table else table["time"] < table["time"][-1]
     load, time = table[LOADS[case]][mine], table["time"][mine]
     load, time = load[-(len(load) // 4):], time[-(len(time) // 4):]
     if len(load) < FEW:
@@ -51,7 +51,7 @@ def details(case, run, overlay, again):
     pressure, dimension = run.frame(run.frames()[-1][1])["pressure"], 3 if case == "spheres" else 2
     made, p = made_with(run, overlay, dimension), run.parameters
     of_density = p["density"] * (p["cell"] / p["time_step"])**2 / 3
-    row = {**made, "solid_scheme": made["scheme"], "cores": 1, "u_over_c": run.summary["ma_paper"], "density_change": np.abs(pressure).max() / of_density,
+    row = {**made, "solid_scheme": made["scheme"], "cores": 1, "u_over_c": run.summary["ma_paper"], "density_change": np.nanmax(np.abs(pressure)) / of_density,
            **load_noise(case, run)}
     if dimension == 2:
         choice = {key: made[key] for key in ("collision", "scheme", "solid_term", "weight") if key in made}

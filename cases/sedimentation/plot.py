@@ -28,7 +28,7 @@ def noise(run, period=2e-3):
     20 ms after the start to 5 mm above the floor."""
     probe = run.probes()
     n = max(3, round(period / run.parameters["interval"]))
-    force = probe["fy"][:-1]  # the last state has no load
+    force = probe["fy"][:-1]  # the last row repeats the load before
     quick = force[n // 2:len(force) - (n - 1 - n // 2)] - np.convolve(force, np.ones(n) / n, "valid")
     inside = slice(n // 2, len(force) - (n - 1 - n // 2))
     calm = (probe["time"][:-1][inside] > 0.02) & (probe["y"][:-1][inside] > 5e-3)

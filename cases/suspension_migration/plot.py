@@ -26,11 +26,16 @@ def crossings(run):
     return np.sort(times)
 
 
+def fluid_velocity(frame):
+    """Mean along x of each row of cells [m/s], over the part of them that is fluid."""
+    return np.average(frame["velocity"][..., 0], axis=1, weights=1.0 - frame["solid_fraction"])
+
+
 def main():
     run = Run(sys.argv[1])
     times = crossings(run)
     last = run.frame(run.frames()[-1][1])
-    u = last["velocity"][..., 0].mean(axis=1)
+    u = fluid_velocity(last)
     ny = len(u)
     middle, side = u[3 * ny // 8:5 * ny // 8].mean(), u[:ny // 8].mean()
     results = [
@@ -53,7 +58,7 @@ def main():
         frame = run.frame(name)
         y = (np.arange(ny) + 0.5) / ny * HEIGHT * 1e3
         label = f"step {step}"
-        columns[f"fluid_velocity_{step}"] = frame["velocity"][..., 0].mean(axis=1)
+        columns[f"fluid_velocity_{step}"] = fluid_velocity(frame)
         columns[f"solid_fraction_{step}"] = frame["solid_fraction"].mean(axis=1)
         left.plot(columns[f"fluid_velocity_{step}"], y, label=label)
         _, _, py, _, vx, *_ = frame["particles"].T

@@ -42,14 +42,15 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
       plan_(plan),
       ranks_(ranks),
       log_(log),
+      probe_times_(scene.output.probe_every, plan.interval()),
       first_(first),
       guard_every_(std::max<std::int64_t>(1, kGuardSteps / plan.fluid_steps)),
       start_(std::chrono::steady_clock::now()),
       last_progress_(start_) {
-  const double keep =
-      (static_cast<double>(first) - 0.5) * plan.interval();  // lines before this time
+  const double keep = time_of(first) - 0.5 * plan.interval();  // lines before this time
   intervals_done_ = first;
-  draws_ = scene.output.fields_every > 0.0;
+  if (scene.output.fields_every > 0.0)
+    field_times_.emplace(scene.output.fields_every, plan.interval());
   const bool flat = scene.box.dimension == 2;
   if (!obstacle_bodies(scene, plan).empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
   if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);
@@ -58,55 +59,39 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
   if (!scene.output.points.empty())
     points_.emplace(folder + "/points.csv",
                     flat ? "time,x,y,pressure,ux,uy" : "time,x,y,z,pressure,ux,uy,uz", keep);
-  if (draws_) fields_.emplace(folder, plan.units, scene.box.dimension, keep);
+  if (field_times_) fields_.emplace(folder, plan.units, scene.box.dimension, keep);
 }
 
-bool Observers::draws_at(std::int64_t interval) const {
-  return draws_ &&
-         static_cast<double>(interval) * plan_.interval() >= next_field_ - 1e-9 * plan_.interval();
+std::int64_t Observers::next_look(std::int64_t state) const {
+  if (obstacles_) return state + 1;  // their loads are summed in each
+  std::int64_t next = (state / guard_every_ + 1) * guard_every_;
+  if (!scene_.output.points.empty()) next = std::min(next, probe_times_.next(state + 1));
+  if (field_times_) next = std::min(next, field_times_->next(state + 1));
+  return next;
 }
 
-std::int64_t Observers::next_look(std::int64_t interval) const {
-  if (obstacles_) return interval;  // their loads are summed in each
-  const auto due = [&](double time) {
-    return static_cast<std::int64_t>(std::min(std::ceil(time / plan_.interval() - 1e-9), 1e15));
-  };
-  std::int64_t next = (interval + guard_every_ - 1) / guard_every_ * guard_every_;
-  if (!scene_.output.points.empty()) next = std::min(next, due(next_probe_));
-  if (draws_) next = std::min(next, due(next_field_));
-  return std::max(interval, next);
+void Observers::at_state(std::int64_t state, Fluid& fluid, const Particles* particles, bool last) {
+  if (last || state == first_) guard(state, fluid, particles);
+  // Fields first: where they find the disk full, the loads' sums are still there to be kept.
+  if (last ? field_times_.has_value() : draws_at(state))
+    write_fields(time_of(state), fluid, particles);
+  if (last || probe_times_.due(state)) {
+    write_points(time_of(state), fluid);
+    if (obstacles_) obstacles_->write(time_of(state));
+  }
+  if (last && particles) write_particles(time_of(state), *particles);
 }
 
-void Observers::after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles) {
-  const double time = static_cast<double>(interval) * plan_.interval();
-  intervals_done_ = interval + 1;
-  if (interval % guard_every_ == 0) {
-    guard(interval, fluid, particles);
-    if (interval == 0) first_mass_excess_ = mass_excess_;
-  }
-  if (time >= next_probe_ - 1e-9 * plan_.interval()) {
-    write_probes(time, fluid, particles, false);
-    while (next_probe_ <= time)
-      next_probe_ += std::max(scene_.output.probe_every, plan_.interval());
-  }
-  if (draws_at(interval)) {
-    write_fields(time, fluid, particles);
-    while (next_field_ <= time)
-      next_field_ += std::max(scene_.output.fields_every, plan_.interval());
-  }
+void Observers::after_interval(std::int64_t state, Fluid& fluid, const Particles* particles) {
+  intervals_done_ = state + 1;
+  if ((state + 1) % guard_every_ == 0) guard(state + 1, fluid, particles);
+  if (particles && probe_times_.due(state)) write_particles(time_of(state), *particles);
   if (seconds_since(last_progress_) > kProgressSeconds || intervals_done_ == plan_.intervals)
-    report_progress(interval, particles);
-}
-
-void Observers::at_end(std::int64_t interval, Fluid& fluid, const Particles* particles) {
-  const double time = static_cast<double>(interval) * plan_.interval();
-  guard(interval, fluid, particles);
-  write_probes(time, fluid, particles, true);
-  if (draws_) write_fields(time, fluid, particles);
+    report_progress(state, particles);
 }
 
 std::vector<double> Observers::state() const {
-  std::vector<double> s{next_probe_, next_field_, max_speed_, first_mass_excess_, mass_excess_};
+  std::vector<double> s{max_speed_, first_mass_excess_, mass_excess_};
   if (obstacles_) {
     const std::vector<double> loads = obstacles_->state();
     s.insert(s.end(), loads.begin(), loads.end());
@@ -115,22 +100,18 @@ std::vector<double> Observers::state() const {
 }
 
 void Observers::restore(const std::vector<double>& s) {
-  next_probe_ = s.at(0);
-  next_field_ = s.at(1);
-  max_speed_ = s.at(2);
-  first_mass_excess_ = s.at(3);
-  mass_excess_ = s.at(4);
-  if (obstacles_) obstacles_->restore(std::span(s).subspan(5));
+  max_speed_ = s.at(0);
+  first_mass_excess_ = s.at(1);
+  mass_excess_ = s.at(2);
+  if (obstacles_) obstacles_->restore(std::span(s).subspan(3));
 }
 
-void Observers::write_probes(double time, const Fluid& fluid, const Particles* particles,
-                             bool last) {
-  if (particles) {
-    const Particles::Everything all = particles->gather();
-    if (probes_)
-      probes_->write(time, all.particles,
-                     last ? std::span<const protocol::Load>{} : std::span(all.loads));
-  }
+void Observers::write_particles(double time, const Particles& particles) {
+  const Particles::Everything all = particles.gather();
+  if (probes_) probes_->write(time, all.particles, all.loads);
+}
+
+void Observers::write_points(double time, Fluid& fluid) {
   for (const Vec3& x : scene_.output.points) {
     const auto c = fluid.at(plan_.units.to_lattice_position(x));
     const double pressure = (c.rho - 1.0) * plan_.units.pressure();
@@ -142,10 +123,10 @@ void Observers::write_probes(double time, const Fluid& fluid, const Particles* p
       points_->row({time, x.x(), x.y(), x.z(), pressure, u.x(), u.y(), u.z()});
   }
   if (points_) points_->flush();
-  if (obstacles_) obstacles_->write(time);
 }
 
-void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* particles) {
+/// Looks at every cell of a state.
+void Observers::guard(std::int64_t state, Fluid& fluid, const Particles* particles) {
   const auto e = fluid.extremes();
   const bool flat = scene_.box.dimension == 2;
   const Vec3 cell(e.cell[0] + 0.5, e.cell[1] + 0.5, e.cell[2] + 0.5);
@@ -157,12 +138,13 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* part
         "interval {}: the fluid is not finite at {}: the step was too long or the cell too coarse "
         "for this flow (Re_h = {:.3g}); raise fluid.velocity_scale if the flow is faster, else "
         "take more cells",
-        interval, place, plan_.reynolds_cell));
+        state, place, plan_.reynolds_cell));
   const double particle =
       ranks_.max(particles ? particles->max_speed() / plan_.units.velocity() : 0.0);
   last_speed_ = e.max_speed;
   max_speed_ = std::max(max_speed_, e.max_speed);
   mass_excess_ = e.mass_excess - fluid.mass_in();
+  if (state == 0) first_mass_excess_ = mass_excess_;
   if (steady_) steady_->look(fluid);
   const double speed = std::max(e.max_speed, particle);
   if (speed <= (warned_ ? kStopSpeed : 1.001 * kWarnSpeed)) return;
@@ -173,8 +155,8 @@ void Observers::guard(std::int64_t interval, Fluid& fluid, const Particles* part
       fmt::format("raise fluid.velocity_scale (now {} m/s)", scene_.fluid.velocity_scale);
   if (speed > kStopSpeed)
     throw NumericsError(
-        fmt::format("interval {}: {}, above {}; {}", interval, what, kStopSpeed, remedy));
-  log_.say(interval, "warning", "{}, above {}: compressibility error; a run stops at {}; {}", what,
+        fmt::format("interval {}: {}, above {}; {}", state, what, kStopSpeed, remedy));
+  log_.say(state, "warning", "{}, above {}: compressibility error; a run stops at {}; {}", what,
            kWarnSpeed, kStopSpeed, remedy);
   warned_ = true;
 }
@@ -240,7 +222,7 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   if (fields_) fields_->write(frame);
 }
 
-void Observers::report_progress(std::int64_t interval, const Particles* particles) {
+void Observers::report_progress(std::int64_t state, const Particles* particles) {
   last_progress_ = std::chrono::steady_clock::now();
   const double wall = seconds_since(start_);
   const double made = static_cast<double>(intervals_done_ - first_);
@@ -248,16 +230,16 @@ void Observers::report_progress(std::int64_t interval, const Particles* particle
   const double left = static_cast<double>(plan_.intervals - intervals_done_) * wall / made;
   const double updates =
       made * plan_.fluid_steps * plan_.domain.nx * plan_.domain.ny * plan_.domain.nz;
-  log_.progress(
-      done, fmt::format("{:>9} | progress | t = {:.4g} s, {:3.0f} %, {:.0f} million "
-                        "updates/s, {} left, Ma {:.3f}, max |u| {:.4g} m/s",
-                        interval, static_cast<double>(intervals_done_) * plan_.interval(),
-                        100.0 * done, updates / wall * 1e-6, duration_text(left),
-                        last_speed_ * std::numbers::sqrt3, last_speed_ * plan_.units.velocity()) +
-                (particles && particles->bonds()
-                     ? fmt::format(", bonds {} ({} broken)", particles->bonds()->intact,
-                                   particles->bonds()->broken)
-                     : ""));
+  log_.progress(done,
+                fmt::format("{:>9} | progress | t = {:.4g} s, {:3.0f} %, {:.0f} million "
+                            "updates/s, {} left, Ma {:.3f}, max |u| {:.4g} m/s",
+                            state, time_of(intervals_done_), 100.0 * done, updates / wall * 1e-6,
+                            duration_text(left), last_speed_ * std::numbers::sqrt3,
+                            last_speed_ * plan_.units.velocity()) +
+                    (particles && particles->bonds()
+                         ? fmt::format(", bonds {} ({} broken)", particles->bonds()->intact,
+                                       particles->bonds()->broken)
+                         : ""));
 }
 
 Summary Observers::summary(double wall_seconds) const {
@@ -266,7 +248,7 @@ Summary Observers::summary(double wall_seconds) const {
   s.cells = cells;
   s.steps = static_cast<long>(intervals_done_) * plan_.fluid_steps;
   s.substeps = plan_.substeps;
-  s.physical_seconds = static_cast<double>(intervals_done_) * plan_.interval();
+  s.physical_seconds = time_of(intervals_done_);
   s.wall_seconds = wall_seconds;
   s.mlups = static_cast<double>(cells) * static_cast<double>(intervals_done_ - first_) *
             plan_.fluid_steps / wall_seconds * 1e-6;

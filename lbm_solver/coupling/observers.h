@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lbm_solver/coupling/obstacle_loads.h"
+#include "lbm_solver/coupling/output_times.h"
 #include "lbm_solver/coupling/particles.h"
 #include "lbm_solver/coupling/steady_watch.h"
 #include "lbm_solver/io/field_writer.h"
@@ -32,29 +33,36 @@ class PartClock {
 };
 
 /// Everything that watches a run without changing it: guard, probes, fields, progress, summary.
-/// Where several ranks share the box, all call the same functions at the same intervals; the first
+/// What belongs to a state (fields, points, particles' motion) is written at that state, the first
+/// one at t = 0; what belongs to an interval (loads) once it is over.
+/// Where several ranks share the box, all call the same functions at the same states; the first
 /// writes the files.
 class Observers {
  public:
-  /// @param first  interval at which the run begins or goes on; earlier output is kept
+  /// @param first  state at which the run begins or goes on; earlier output is kept
   Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
             const std::string& folder, Log& log, std::int64_t first = 0);
 
-  /// What a checkpoint must keep of the observers; the same on every rank.
+  /// What a checkpoint must keep of the observers; the same on every rank. To be asked for before
+  /// `at_state`, which the run that goes on calls again.
   std::vector<double> state() const;
   void restore(const std::vector<double>& state);
 
-  /// A picture of the fields is due at this interval.
-  bool draws_at(std::int64_t interval) const;
+  /// A picture of the fields is due at this state.
+  bool draws_at(std::int64_t state) const { return field_times_ && field_times_->due(state); }
 
-  /// The first interval, from this one on, whose end anything looks at in a fluid alone.
-  std::int64_t next_look(std::int64_t interval) const;
+  /// The first state after this one that anything looks at in a fluid alone.
+  std::int64_t next_look(std::int64_t state) const;
 
-  /// After an interval's loads are known. @param particles  null for a fluid alone
+  /// At a state, before its interval begins: fields, points, and the mean loads on obstacles until
+  /// then, where they are due. At the last one all of them, and the particles' rows.
+  /// @param particles  null for a fluid alone
   /// @throws NumericsError
-  void after_interval(std::int64_t interval, Fluid& fluid, const Particles* particles);
-  /// At the last state, which has no loads.
-  void at_end(std::int64_t interval, Fluid& fluid, const Particles* particles);
+  void at_state(std::int64_t state, Fluid& fluid, const Particles* particles, bool last = false);
+  /// After the interval that began at a state, whose loads are known: guards the next state, and
+  /// writes the particles' rows of this one.
+  /// @throws NumericsError
+  void after_interval(std::int64_t state, Fluid& fluid, const Particles* particles);
   /// After each fluid step of a scene with obstacles: loads in the order of obstacle_bodies.
   void add_loads(std::span<const BodyLoad> loads) { obstacles_->add(loads); }
   /// A fluid alone whose velocity no longer changes (run.steady_below).
@@ -63,26 +71,28 @@ class Observers {
   Summary summary(double wall_seconds) const;
 
  private:
-  void guard(std::int64_t interval, Fluid& fluid, const Particles* particles);
+  double time_of(std::int64_t state) const { return static_cast<double>(state) * plan_.interval(); }
+  void guard(std::int64_t state, Fluid& fluid, const Particles* particles);
   void add_particles(const Particles& particles, FieldFrame& frame) const;
   void add_bonds(const std::vector<protocol::Particle>& particles,
                  const protocol::BondReport& bonds, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
-  void write_probes(double time, const Fluid& fluid, const Particles* particles, bool last);
-  void report_progress(std::int64_t interval, const Particles* particles);
+  void write_points(double time, Fluid& fluid);
+  void write_particles(double time, const Particles& particles);
+  void report_progress(std::int64_t state, const Particles* particles);
 
   const Scene& scene_;
   const Plan& plan_;
   const Decomposition ranks_;
   Log& log_;
-  bool draws_ = false;                 // fields are asked for
-  std::optional<ProbeWriter> probes_;  // particles
+  const OutputTimes probe_times_;
+  std::optional<OutputTimes> field_times_;  // where fields are asked for
+  std::optional<ProbeWriter> probes_;       // particles
   std::optional<CsvWriter> points_;
   std::optional<ObstacleLoads> obstacles_;
   std::optional<SteadyWatch> steady_;
   std::optional<FieldWriter> fields_;  // of rank 0, like the tables
   std::int64_t first_, guard_every_, intervals_done_ = 0;
-  double next_probe_ = 0.0, next_field_ = 0.0;
   double max_speed_ = 0.0, last_speed_ = 0.0;           // of the fluid, lattice units
   bool warned_ = false;                                 // of a speed above kWarnSpeed
   double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out

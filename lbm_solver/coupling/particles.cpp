@@ -25,7 +25,7 @@ double relaxation_time(const Units& units, const FluidScene& fluid) {
 }  // namespace
 
 LightRule light_rule(const std::string& solid_term, double tau) {
-  if (by_resistance(solid_term)) return {1.5, 1.0, 0.05};
+  if (by_resistance(solid_term)) return {tau < 0.525 ? 1.5 : 0.99, 1.0, 0.05};
   return {tau > 0.8 ? 2.0 : 0.9, 2.0, 0.2};
 }
 
@@ -87,6 +87,8 @@ void Particles::arrive(std::span<const protocol::Particle> particles, double int
     change(s.omega, past.motion.omega, past.mean_change.omega, change_[i].omega,
            mean_change_[i].omega);
   }
+  loads_before_.swap(loads_);
+  loads_known_ = false;
   loads_.clear();
   whole_.clear();
   sums_.assign(particles.size(), BodyLoad{});
@@ -198,6 +200,7 @@ void Particles::add_virtual_mass(std::size_t i, protocol::Load& load) const {
 }
 
 std::span<const protocol::Load> Particles::mean_loads(int steps) {
+  loads_known_ = true;
   loads_.resize(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     loads_[i] = hydrodynamic(i, steps);
@@ -248,9 +251,33 @@ void Particles::share_light() {
   }
 }
 
+/// This rank's parts in the order of its particles, then those of particles that have left it.
+std::vector<protocol::Load> Particles::latest_loads() const {
+  if (loads_known_) return loads_;
+  std::unordered_map<std::int64_t, std::size_t> at;
+  std::vector<protocol::Load> latest;
+  for (const auto& p : particles_) {
+    at.emplace(p.state.id, latest.size());
+    latest.push_back({p.state.id, {}, {}});
+  }
+  for (const protocol::Load& load : loads_before_) {
+    const auto found = at.find(load.id);
+    if (found == at.end())
+      latest.push_back(load);
+    else
+      latest[found->second] = load;
+  }
+  return latest;
+}
+
 Particles::Everything Particles::gather() const {
   Everything all;
-  if (ranks_.alone()) return {particles_, loads_};
+  const std::vector<protocol::Load> loads = latest_loads();
+  if (ranks_.alone()) {
+    all.particles = particles_;
+    all.loads.assign(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(size()));
+    return all;
+  }
   constexpr std::size_t line = 21;
   std::vector<double> lines;
   for (std::size_t i = 0; i < particles_.size(); ++i) {
@@ -259,8 +286,12 @@ Particles::Everything Particles::gather() const {
     keep(lines, {s.x, s.v, s.omega});
     lines.insert(lines.end(),
                  {shape.radius, shape.mass, shape.inertia, static_cast<double>(shape.type)});
-    const protocol::Load load = i < loads_.size() ? loads_[i] : protocol::Load{};
-    keep(lines, {load.force, load.torque});
+    keep(lines, {loads[i].force, loads[i].torque});
+  }
+  for (std::size_t i = size(); i < loads.size(); ++i) {
+    lines.insert(lines.end(), {static_cast<double>(loads[i].id), 0.0});
+    lines.insert(lines.end(), 13, 0.0);
+    keep(lines, {loads[i].force, loads[i].torque});
   }
   lines = ranks_.collect(lines);
   std::map<std::int64_t, std::pair<protocol::Particle, protocol::Load>> by_id;

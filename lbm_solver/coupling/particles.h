@@ -20,11 +20,11 @@ struct LightRule {
   double mean_weight;   ///< of the last interval in the mean acceleration of their inner fluid
 };
 
-/// Of a solid collision. By resistance (RESISTANCE of lbm_solver/docs): below 1.5 times the fluid,
-/// proven from 0.1 on. With the other terms below 0.9, or below twice the fluid where it is so
-/// viscous that a step carries momentum across a cell (τ above 0.8). Elsewhere those would be
-/// harmed: where surface cells are nearly transparent (τ → ½) the fluid answers a virtual mass too
-/// late, and they blew up at ρ_s = ρ_f.
+/// Of a solid collision. By resistance: below the fluid's density, or below 1.5 times of it where
+/// surface cells are nearly transparent (τ below 0.525); proven from 0.1 on. With the other terms
+/// below 0.9, or below twice the fluid where it is so viscous that a step carries momentum across a
+/// cell (τ above 0.8). Elsewhere those would be harmed: where surface cells are nearly transparent
+/// (τ → ½) the fluid answers a virtual mass too late, and they blew up at ρ_s = ρ_f.
 LightRule light_rule(const std::string& solid_term, double tau);
 
 /// The solid's particles between wire and lattice: SI states in, bodies in lattice units out,
@@ -63,9 +63,9 @@ LightRule light_rule(const std::string& solid_term, double tau);
 ///   F' = (m_s (F + m_v (U_k - U_{k-1})/T) - m_v G) / (m_s + m_v),
 /// where G, everything else that acts on the particle, is what the last interval shows:
 /// G = m_s (U_k - U_{k-1})/T - F'_{k-1}. Where nothing changes in time, F' = F. The inner fluid's
-/// m_c dU/dt of such a particle takes the mean acceleration over some five intervals: surface cells
-/// follow a change more slowly than that term gives it back, which alone blows up below
-/// rho_s/rho_f = 0.25. Proven down to 0.1.
+/// m_c dU/dt of such a particle takes the mean acceleration over some intervals (LightRule):
+/// surface cells follow a change more slowly than that term gives it back, which alone blows up
+/// below rho_s/rho_f = 0.25. Proven down to 0.1.
 ///
 /// Where several ranks share the box, each knows the particles that touch its cells and sends the
 /// part of F that its cells saw; all that is known of a particle as a whole (inner fluid, buoyancy,
@@ -105,7 +105,9 @@ class Particles {
   /// All particles of the box, each once, in the order of their ids.
   struct Everything {
     std::vector<protocol::Particle> particles;
-    std::vector<protocol::Load> loads;  ///< what mean_loads returned last, whole; may be empty
+    /// What mean_loads returned last, whole: of this interval, or of the one before while its own
+    /// are not known yet; 0 for a particle that has just come.
+    std::vector<protocol::Load> loads;
   };
   /// On rank 0; elsewhere empty. Collective.
   Everything gather() const;
@@ -140,6 +142,7 @@ class Particles {
   double virtual_mass(std::size_t i) const;  // over the covered mass
   void add_virtual_mass(std::size_t i, protocol::Load& load) const;
   void share_light();
+  std::vector<protocol::Load> latest_loads() const;
   std::vector<Past> present() const;
 
   Units units_;
@@ -158,8 +161,10 @@ class Particles {
   std::vector<const Past*> before_;  // [particle], null for a new one
   std::vector<Body> bodies_;
   std::vector<BodyLoad> sums_;
-  std::vector<protocol::Load> loads_;  // this rank's parts
-  std::vector<protocol::Load> whole_;  // of all ranks; where virtual masses are about
+  bool loads_known_ = false;                  // of this interval
+  std::vector<protocol::Load> loads_;         // this rank's parts
+  std::vector<protocol::Load> whole_;         // of all ranks; where virtual masses are about
+  std::vector<protocol::Load> loads_before_;  // loads_ of the interval before
   std::optional<protocol::BondReport> bonds_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/coupling/run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
@@ -18,8 +19,7 @@ namespace {
 
 std::int64_t last_interval(const Plan& plan, const RunOptions& options) {
   if (!options.until) return plan.intervals;
-  const double intervals = std::ceil(*options.until / plan.interval() - 1e-9);
-  return std::min(plan.intervals, std::max<std::int64_t>(1, static_cast<std::int64_t>(intervals)));
+  return std::clamp<std::int64_t>(first_state(*options.until, plan.interval()), 1, plan.intervals);
 }
 
 /// The summary of a run that has ended. Collective.
@@ -162,13 +162,20 @@ class CoupledRun {
         break;
       }
       if (arrival.head.flags & protocol::kCheckpoint) write_checkpoint(interval);
-      stands_at_.reset();
+      const bool last = arrival.head.flags & protocol::kLast;
+      // a frame may find the disk full: until it is written both still stand at this interval
+      if (every_ > 0 && observers_.draws_at(interval))
+        memory_ = particles_.memory();
+      else
+        stands_at_.reset();
       particles_.arrive(arrival.particles, plan_.interval());
       particles_.tell_bonds(arrival.bonds);
-      if (arrival.head.flags & protocol::kLast) {
-        observers_.at_end(interval, fluid_, &particles_);
-        break;
-      }
+      place(0);
+      observers_.at_state(interval, fluid_, &particles_, last);
+      clock_.charge("output");
+      if (last) break;
+      stands_at_.reset();
+      memory_.reset();
       for (int step = 0; step < plan_.fluid_steps; ++step) advance(step);
       solid_.answer(particles_.mean_loads(plan_.fluid_steps), flags_after(interval));
       stands_at_ = interval + 1;
@@ -178,12 +185,17 @@ class CoupledRun {
     }
   }
 
-  void advance(int step) {
+  /// Where the solids are when a step of the interval begins.
+  void place(int step) {
     bodies_.resize(obstacles_);
     const auto moving = particles_.bodies(step * plan_.units.dt);
     bodies_.insert(bodies_.end(), moving.begin(), moving.end());
     fluid_.place(bodies_);
     clock_.charge("placing");
+  }
+
+  void advance(int step) {
+    if (step > 0) place(step);
     fluid_.step();
     clock_.charge("sweep");
     std::vector<BodyLoad> loads = fluid_.loads();
@@ -217,7 +229,7 @@ class CoupledRun {
 
   void write_state(const std::string& name, std::int64_t interval) {
     State state = fluid_.state();
-    state["particles"] = particles_.memory();
+    state["particles"] = memory_ ? *memory_ : particles_.memory();
     save(options_.out + "/" + name + ".h5", plan_, ranks_, std::move(state), observers_, interval);
     clock_.charge("checkpoint");
   }
@@ -257,6 +269,7 @@ class CoupledRun {
   Observers observers_;
   const std::int64_t end_, every_;
   std::optional<std::int64_t> stands_at_ = start_.interval;  // no part of an interval is done
+  std::optional<std::vector<double>> memory_;  // of particles_ before those of stands_at_ arrived
   std::string ending_ = "complete";
   PartClock clock_;
 };
@@ -308,32 +321,29 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
   const std::int64_t every = checkpoint_intervals(scene, plan);
   std::string ending = "complete";
   PartClock clock;
-  std::int64_t step = fluid.steps();
-  while (step < end) {
-    std::int64_t next = std::min(observers.next_look(step) + 1, end);
+  const std::int64_t first = fluid.steps();
+  for (std::int64_t step = first;; step = fluid.steps()) {
+    const bool signalled = ranks.max(protocol::signalled() ? 1.0 : 0.0) > 0.0;
+    if (signalled)
+      ending = "stopped by a signal";
+    else if (observers.steady())
+      ending = fmt::format("steady: the velocity changes by less than {} a turnover",
+                           scene.steady_below);
+    const bool last = step >= end || signalled || observers.steady();
+    if (every > 0 && step > first && (step % every == 0 || signalled))
+      save(checkpoint, plan, ranks, fluid.state(), observers, step);
+    observers.at_state(step, fluid, nullptr, last);
+    clock.charge("output");
+    if (last) break;
+    std::int64_t next = std::min(observers.next_look(step), end);
     if (every > 0) next = std::min(next, (step / every + 1) * every);
     fluid.advance(next - step);
-    step = next;
     clock.charge("sweep");
     if (loads) observers.add_loads(fluid.loads());
     clock.charge("loads");
-    observers.after_interval(step - 1, fluid, nullptr);
-    const bool signalled = ranks.max(protocol::signalled() ? 1.0 : 0.0) > 0.0;
-    if (every > 0 && (fluid.steps() % every == 0 || signalled))
-      save(checkpoint, plan, ranks, fluid.state(), observers, step);
+    observers.after_interval(next - 1, fluid, nullptr);
     clock.charge("output");
-    if (signalled) {
-      ending = "stopped by a signal";
-      break;
-    }
-    if (observers.steady()) {
-      ending = fmt::format("steady: the velocity changes by less than {} a turnover",
-                           scene.steady_below);
-      break;
-    }
   }
-  observers.at_end(step, fluid, nullptr);
-  clock.charge("output");
   const Summary summary = summarise(scene, options, fluid, observers, clock, ending);
   if (ranks.rank() == 0) write_summary(options.out, summary);
   return summary;

@@ -6,7 +6,6 @@
 
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -62,12 +61,9 @@ ProbeWriter::ProbeWriter(const std::string& folder, int dimension, double keep_u
 
 void ProbeWriter::write(double time, std::span<const protocol::Particle> particles,
                         std::span<const protocol::Load> loads) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const protocol::State& s = particles[i].state;
-    const protocol::Load load =
-        loads.empty() ? protocol::Load{s.id, {none, none, none}, {none, none, none}} : loads[i];
-    const auto& [x, v, w, f, t] = std::tie(s.x, s.v, s.omega, load.force, load.torque);
+    const auto& [x, v, w, f, t] = std::tie(s.x, s.v, s.omega, loads[i].force, loads[i].torque);
     const auto id = static_cast<double>(s.id);
     if (dimension_ == 2)
       table_.row({time, id, x[0], x[1], v[0], v[1], w[2], f[0], f[1], t[2]});

@@ -32,11 +32,12 @@ class CsvWriter {
 };
 
 /// Appends one line a particle to `probes.csv`: its motion at the beginning of an interval and the
-/// load it received over it. SI units.
+/// load it received over it; at the last state, with which no interval begins, the load over the
+/// one before. SI units.
 class ProbeWriter {
  public:
   ProbeWriter(const std::string& folder, int dimension, double keep_until);
-  /// @param loads  same order as the particles; empty at the last state
+  /// @param loads  same order as the particles
   void write(double time, std::span<const protocol::Particle> particles,
              std::span<const protocol::Load> loads);
 

@@ -83,26 +83,29 @@ class Fluid {
     double rho = 0.0;
     Vec3 u;
   };
-  /// Density and velocity of the populations that have arrived at a cell.
+  /// Density and velocity of the populations that have arrived at a cell, whatever covers it.
   Cell cell(int x, int y, int z = 0) const;
-  /// The same at any place of the box, between the centres of the nearest cells (linear along each
-  /// axis). Collective.
-  Cell at(const Vec3& place) const;
+  /// What a row shows, at any place of the box: between the centres of the nearest cells (linear
+  /// along each axis); the density is that of those with fluid. Collective.
+  Cell at(const Vec3& place);
 
   /// Population f_q - w_q that has arrived at a cell, for tests and cell passes.
   Population arriving(int q, int x, int y, int z = 0) { return stream_.arriving(f_, q, x, y, z); }
   double arriving(int q, int x, int y, int z = 0) const { return stream_.arriving(f_, q, x, y, z); }
 
   struct Extremes {
-    double max_speed = 0.0;
-    Cell3 cell{0, 0, 0};  ///< of the box: that of max_speed, or the first that is not finite
-    bool finite = true;
-    double mass_excess = 0.0;  ///< Σ (rho - 1)
+    double max_speed = 0.0;    ///< of cells with fluid, as a row shows it
+    Cell3 cell{0, 0, 0};       ///< of the box: that of max_speed, or the first that is not finite
+    bool finite = true;        ///< of all cells
+    double mass_excess = 0.0;  ///< Σ (rho - 1) of all cells: solids and fluid exchange mass
   };
   /// Of all ranks. Collective.
   Extremes extremes();
 
-  /// Density and velocity of a row of this rank. @param rho, u  [nx] each, overwritten
+  /// What a row of this rank shows. Covered cells have the velocity (1-B) u + B u_s, with B the
+  /// solid's share (SolidShare); under a scheme of its own the solid's velocity where they are
+  /// covered whole. Where a cell is covered whole there is no fluid: its density is not a number.
+  /// @param rho, u  [nx] each, overwritten
   void row(int y, int z, std::span<double> rho, const RowVelocity& u);
 
   /// Everything that the coming steps depend on, as named arrays that know nothing of the ranks;
@@ -120,6 +123,8 @@ class Fluid {
   void sweep_and_exchange(EsotericPull& stream);
   void make_steps(std::int64_t steps);
   void remember_loads();
+  void moments(int y, int z, std::span<double> rho, const RowVelocity& u, std::span<double> solid);
+  void cover_by(const Body& body, int y, int z, const RowVelocity& u, std::span<double> solid);
 
   std::shared_ptr<const Decomposition> ranks_;
   Populations f_;
@@ -128,6 +133,7 @@ class Fluid {
   Vec3 half_force_;  // half the body force: rho u = Σ c f + F/2
   std::unique_ptr<HaloExchange> halo_;
   std::unique_ptr<CoverMap> cover_;
+  RowMedium medium_;
   std::unique_ptr<BodyScheme> scheme_;
   std::vector<Body> bodies_;  // as placed
   TwoStepLoads two_steps_;

@@ -1,39 +1,70 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/solver/row_moments.h"
 
+#include <algorithm>
+
 #include "lbm_solver/base/simd.h"
-#include "lbm_solver/collision/equilibrium.h"
+#include "lbm_solver/collision/forcing.h"
 
 namespace lbm {
 namespace {
 
+/// The row of one lattice and precision, a pack of cells at a time.
 template <class L, class Real>
-void row_moments_of(Populations& f, const EsotericPull& stream, int y, int z,
-                    const Vec3& half_force, std::span<double> rho, const RowVelocity& u) {
-  const auto row = stream.open<L, Real>(f, y, z);  // makes the ends ready; may be repeated
-  const auto cells = [&](int x, const auto& lanes) {
-    Pack g[L::Q];
-    unroll<L::Q>([&](auto q) { g[q] = lanes.load(row.in[q] + x); });
-    const Moments<L, Pack> m = moments<L>(g);
-    const Pack inverse = Pack(1.0) / (m.drho + Pack(1.0));
-    lanes.store(&rho[x], m.drho + Pack(1.0));
-    for (int a = 0; a < L::D; ++a) lanes.store(&u[a][x], (m.j[a] + Pack(half_force[a])) * inverse);
-  };
-  int x = 0;
-  for (; x + kPackWidth <= f.nx(); x += kPackWidth) cells(x, AllLanes<Pack>());
-  if (x < f.nx()) cells(x, FirstLanes<Pack>(f.nx() - x));
-}
+class MomentsOfRow {
+ public:
+  explicit MomentsOfRow(const RowMedium& medium)
+      : medium_(medium), force_(medium.parameters), eddies_(medium.parameters) {}
+
+  void operator()(Populations& f, const EsotericPull& stream, int y, int z, std::span<double> rho,
+                  const RowVelocity& u, std::span<double> solid) const {
+    const auto row = stream.open<L, Real>(f, y, z);  // makes the ends ready; may be repeated
+    CoverBlock* const* blocks = medium_.cover ? medium_.cover->row(y, z) : nullptr;
+    const auto cells = [&](int x, const auto& lanes) {
+      Pack g[L::Q];
+      unroll<L::Q>([&](auto q) { g[q] = lanes.load(row.in[q] + x); });
+      const Moments<L, Pack> m = moments<L>(g);
+      Vector<L, Pack> mean = velocity<L>(m, force_);
+      Pack share(0.0);
+      if (blocks && blocks[x / kPackWidth]) share = mix(g, m, *blocks[x / kPackWidth], mean);
+      lanes.store(&rho[x], m.drho + Pack(1.0));
+      lanes.store(&solid[x], share);
+      for (int a = 0; a < L::D; ++a) lanes.store(&u[a][x], mean[a]);
+    };
+    int x = 0;
+    for (; x + kPackWidth <= f.nx(); x += kPackWidth) cells(x, AllLanes<Pack>());
+    if (x < f.nx()) cells(x, FirstLanes<Pack>(f.nx() - x));
+  }
+
+ private:
+  /// Mixes the solid's velocity into that of the cells of a covered block. @return its share
+  Pack mix(const Pack (&g)[L::Q], const Moments<L, Pack>& m, const CoverBlock& block,
+           Vector<L, Pack>& mean) const {
+    const auto solid = medium_.cover->merge<L::D>(block);
+    Pack tau(medium_.parameters.tau);
+    if (medium_.turbulent) tau = turbulent_tau<L>(g, m, eddies_, force_);
+    Pack share = medium_.share.of<L>(solid.cover, tau);
+    where(solid.cover == Pack(0.0), share) = Pack(0.0);
+    for (int a = 0; a < L::D; ++a)  // what is not finite stays so: 0 times it is not 0
+      mean[a] = (Pack(1.0) - share) * mean[a] + share * solid.u[a];
+    return share;
+  }
+
+  const RowMedium& medium_;
+  GuoForce<L> force_;
+  Smagorinsky eddies_;
+};
 
 }  // namespace
 
-void row_moments(Populations& f, const EsotericPull& stream, int y, int z, const Vec3& half_force,
-                 std::span<double> rho, const RowVelocity& u) {
+void row_moments(Populations& f, const EsotericPull& stream, int y, int z, const RowMedium& medium,
+                 std::span<double> rho, const RowVelocity& u, std::span<double> solid) {
   const bool single = f.precision() == Precision::Single;
   const auto run = [&]<class L>(L) {
     if (single)
-      row_moments_of<L, float>(f, stream, y, z, half_force, rho, u);
+      MomentsOfRow<L, float>{medium}(f, stream, y, z, rho, u, solid);
     else
-      row_moments_of<L, double>(f, stream, y, z, half_force, rho, u);
+      MomentsOfRow<L, double>{medium}(f, stream, y, z, rho, u, solid);
   };
   switch (f.lattice().Q) {
     case 9:

@@ -6,16 +6,27 @@
 
 #include "lbm_solver/base/vec3.h"
 #include "lbm_solver/field/esoteric_pull.h"
+#include "lbm_solver/immersed/cover_map.h"
+#include "lbm_solver/immersed/solid_share.h"
 
 namespace lbm {
 
 /// Velocity components along a row, [nx] each; z is left alone in two dimensions.
 using RowVelocity = std::array<std::span<double>, 3>;
 
-/// Density and velocity of a row of what has arrived, lattice units.
-/// @param half_force  half the body force
-/// @param rho         [nx]
-void row_moments(Populations& f, const EsotericPull& stream, int y, int z, const Vec3& half_force,
-                 std::span<double> rho, const RowVelocity& u);
+/// What the moments of a row depend on beside the populations.
+struct RowMedium {
+  CollisionParameters parameters;   ///< half of the body force belongs to the momentum
+  bool turbulent = false;           ///< the relaxation time has an eddy viscosity
+  const CoverMap* cover = nullptr;  ///< covered cells; null: none
+  SolidShare share;                 ///< of the solids in their velocity
+};
+
+/// Density of a row of what has arrived, and its velocity, in covered cells (1-B) u + B u_s.
+/// Lattice units. Populations that are not finite make both not finite, in covered cells too.
+/// @param rho     [nx]
+/// @param solid   [nx], B: 0 in fluid, 1 where a cell is covered whole
+void row_moments(Populations& f, const EsotericPull& stream, int y, int z, const RowMedium& medium,
+                 std::span<double> rho, const RowVelocity& u, std::span<double> solid);
 
 }  // namespace lbm

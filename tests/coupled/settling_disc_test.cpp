@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "protocol/trace_compare.h"
 #include "tests/support/coupled_job.h"
@@ -124,6 +125,66 @@ TEST(SettlingDiscCoupled, FirstStateIsTheStartAndTheLastCarriesItsFlag) {
   }
   EXPECT_NE(record.back().head.flags & protocol::kLast, 0U);
   EXPECT_TRUE(record.back().loads.empty());
+}
+
+/// Numbers of an array in a frame of the fields.
+std::vector<double> frame_values(const SettlingDisc& scene, const std::string& path) {
+  const auto dump = test::run("h5dump -y -w 1 -d " + path + " out/fields.h5 | grep -E '^ +[-0-9n]'",
+                              scene.folder(), 20.0);
+  std::vector<double> values;
+  std::istringstream lines(dump.output);
+  for (std::string line; std::getline(lines, line);) values.push_back(std::stod(line));
+  return values;
+}
+
+std::vector<std::vector<double>> probe_rows(const SettlingDisc& scene) {
+  std::istringstream lines(scene.output("probes.csv"));
+  std::string line, number;
+  std::getline(lines, line);
+  std::vector<std::vector<double>> rows;
+  while (std::getline(lines, line)) {
+    rows.emplace_back();
+    std::istringstream numbers(line);
+    while (std::getline(numbers, number, ',')) rows.back().push_back(std::stod(number));
+  }
+  return rows;
+}
+
+// Fluid and particles of a frame belong to one time, the first one to t = 0; the disc shows its own
+// velocity, and no pressure. The last row of the probes has the load of the last interval.
+TEST(SettlingDiscCoupled, OutputShowsTheStateOfItsTime) {
+  SettlingDisc scene;
+  scene.change_scene("fields_every = 0.05", "fields_every = 0.008");
+  scene.change_scene("probe_every = 0.001", "probe_every = 0.004");
+  expect_success(scene.run("--record all.h5"));
+  const auto record = recorded(scene, "all.h5");
+  const auto rows = probe_rows(scene);
+  ASSERT_EQ(rows.size(), 11U);
+  const double interval = record[1].head.time;
+  for (int i = 0; i <= 10; ++i) {  // the first state at or after the time
+    EXPECT_GE(rows[i][0], 0.004 * i - 1e-9);
+    EXPECT_LT(rows[i][0], 0.004 * i + interval);
+  }
+  for (const double value : rows.back()) EXPECT_TRUE(std::isfinite(value));
+  const double last_load = record[record.size() - 2].loads[0].force[1];
+  EXPECT_NEAR(rows.back()[8], last_load, 1e-9 * std::abs(last_load));  // twelve digits are written
+  for (const double u : frame_values(scene, "/frame000000/velocity")) EXPECT_EQ(u, 0.0);
+  const auto solid = frame_values(scene, "/frame000005/solid_fraction");
+  const auto velocity = frame_values(scene, "/frame000005/velocity");
+  const auto pressure = frame_values(scene, "/frame000005/pressure");
+  const auto disc = frame_values(scene, "/frame000005/particles");
+  ASSERT_EQ(velocity.size(), 3 * solid.size());
+  ASSERT_EQ(disc.size(), 8U);
+  // vy of the same time; six digits are shown
+  EXPECT_NEAR(disc[5], rows.back()[5], 1e-5 * std::abs(disc[5]));
+  int whole = 0;
+  for (std::size_t i = 0; i < solid.size(); ++i) {
+    EXPECT_EQ(std::isnan(pressure[i]), solid[i] == 1.0) << i;
+    if (solid[i] < 1.0) continue;
+    ++whole;  // single precision; the disc hardly turns
+    EXPECT_NEAR(velocity[3 * i + 1], disc[5], 1e-3 * std::abs(disc[5])) << i;
+  }
+  EXPECT_GT(whole, 50);
 }
 
 TEST(SettlingDiscCoupled, SeveralFluidStepsAnIntervalGiveTheSameMotion) {
