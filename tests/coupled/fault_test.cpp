@@ -149,7 +149,7 @@ TEST(ScriptError, DuringTheRun) {
   SettlingDisc scene;  // the disc leaves the box and LIGGGHTS misses an atom
   scene.change_scene("end_time = 0.04", "end_time = 1.0");
   scene.change_script("then \"fix bottom", "then \"variable no equal 0\" else \"fix bottom");
-  scene.change_script("${particle1_y}", "0.0004");
+  scene.change_script("${particle1_y}", "0.000005");
   scene.change_script("thermo           5000",
                       "thermo 100\nthermo_modify lost error\nset atom 1 vy -0.05");
   expect_end(scene.run(), 1, {"lbm | error | the solid program stopped: ERROR: Lost atoms"});

@@ -268,7 +268,7 @@ TEST_F(FixTest, AnEmptyBoxIsLegal) {
 TEST(Removal, ADiscThatFallsOutOfTheBoxIsGoneAndTheRunGoesOn) {
   test::SettlingDisc scene;
   scene.change_scene("end_time = 0.04", "end_time = 1.0");
-  scene.change_script("${particle1_y}", "0.0004");
+  scene.change_script("${particle1_y}", "0.000005");
   scene.change_script("then \"fix bottom", "then \"variable no equal 0\" else \"fix bottom");
   scene.change_script("thermo           5000",
                       "thermo 5000\nthermo_modify lost ignore\nset atom 1 vy -0.05");
