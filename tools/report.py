@@ -1,6 +1,6 @@
 """Speed against error of every choice, and which of them survive the hard cases.
 
-    tools/report [--quick|--full] [CASE…]     CASE: array, spheres, cylinder, couette, settling, fractions, stability, needs
+    tools/report [--quick|--full] [CASE…]     --list names the cases
 
 One run is one row: a scene of cases/ with an overlay, judged against a reference. What has been run is kept in
 out/report and not run again (--again does). Writes report.md, rows.csv, rows.json and a picture a case there.
@@ -20,11 +20,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 from launch import ROOT
 from pictures import Run
-from report_cases import CASES_OF, OURS, PAPERS, SCHEMES, STAIRS
+from report_arrays import arrays, draw_arrays, text_of_arrays
+from report_cases import CASES_OF, FORMER, GROUPS, OURS, PAPERS, SCHEMES, STAIRS
 from report_details import details
 from report_fractions import fractions, text_of_fractions
 from report_needs import needs, text_of_needs
 from report_runs import OUT, module_of, progress, run_scene, toml, verdict
+from report_seconds import doubt, text_of_seconds
 from report_stability import draw_stability, stability, text_of_stability
 
 PASTED = ("fluid", "numerics", "coupling")  # tables of an overlay that a recommendation shows
@@ -75,9 +77,8 @@ def measure(case, full, again):
     return rows
 
 
-def doubt(row):
-    """Error that a user must reckon with: mean and half of the spread over places, at least the reference's own."""
-    return max(abs(row["error_percent"]) + row["spread_percent"] / 2, row["reference_uncertainty_percent"])
+def is_default(scheme):
+    return scheme.startswith("default")
 
 
 def front(rows):
@@ -105,7 +106,7 @@ def recommended(rows, wanted):
     fitting = [r for r in rows if r["family"] == OURS and r["status"] == "ok" and doubt(r) <= wanted]
     least = min((r["seconds"] for r in fitting), default=0.0)
     return min((r for r in fitting if r["seconds"] <= SCATTER * least),
-               key=lambda r: ("default" not in r["scheme"], doubt(r)), default=None)
+               key=lambda r: (not is_default(r["scheme"]), doubt(r)), default=None)
 
 
 def said(factors, better, none):
@@ -138,8 +139,8 @@ def draw(case, rows):
             x = [r["seconds"] for r in good]
             y = [max(abs(r["error_percent"]), 1e-2) for r in good]
             axes.errorbar(x, y, yerr=[np.minimum([r["spread_percent"] / 2 for r in good], 0.9 * np.array(y)),
-                                      [r["spread_percent"] / 2 for r in good]], fmt="o" if "default" in label else "s",
-                          markersize=5 if "default" in label else 3.5, color=colors[label], elinewidth=0.6, label=label)
+                                      [r["spread_percent"] / 2 for r in good]], fmt="o" if is_default(label) else "s",
+                          markersize=5 if is_default(label) else 3.5, color=colors[label], elinewidth=0.6, label=label)
     kept = front(rows)
     axes.step([r["seconds"] for r in kept], [doubt(r) for r in kept], where="post", color="0.3", linewidth=0.8, zorder=0,
               label="front (error and half of the spread)")
@@ -181,7 +182,8 @@ def text_of_recommended(rows):
 
 def text_of(case, rows):
     lines = [f"## {case}: {CASES_OF[case][5]}", "", f"![{case}]({case}.png)", ""]
-    for family, name in ((PAPERS, "the papers' scheme"), (STAIRS, "the staircase")):
+    lines += text_of_seconds(rows)
+    for family, name in ((FORMER, "the former default"), (PAPERS, "the papers' scheme"), (STAIRS, "the staircase")):
         cost, error = advantage(rows, family)
         if not cost:
             lines.append(f"None of {name}'s runs here came to its end.  ")
@@ -205,32 +207,41 @@ def kept(name, rows):
     return rows
 
 
+def arrays_case(args):
+    rows = arrays(args.again)
+    draw_arrays(rows)
+    return text_of_arrays(rows)
+
+
 def stability_case(args):
     rows = kept("stability", stability(args.full, args.again))
     draw_stability(rows)
     return text_of_stability(rows)
 
 
-OTHERS = {"fractions": lambda args: text_of_fractions(fractions(args.again)),
+OTHERS = {"arrays": arrays_case,
+          "fractions": lambda args: text_of_fractions(fractions(args.again)),
           "stability": stability_case,
           "needs": lambda args: text_of_needs(kept("needs", needs(args.again)))}
 
 
 def main():
-    names = [*CASES_OF, *OTHERS]
+    names = [*CASES_OF, *OTHERS, *GROUPS]
     p = argparse.ArgumentParser(prog="tools/report", description=__doc__.splitlines()[0])
     p.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(names)}; default: all")
-    p.add_argument("--quick", action="store_true", help="under ten minutes (default)")
+    p.add_argument("--quick", action="store_true", help="about ten minutes (default)")
     p.add_argument("--full", action="store_true", help="more cells, steps and cases; under ninety minutes")
     p.add_argument("--list", action="store_true", help="the cases, and nothing else")
     p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
     p.add_argument("--again", action="store_true", help="run also what has been run before")
     args = p.parse_args()
     if args.list:
-        print("\n".join([*(f"{name:10} {case[5]}" for name, case in CASES_OF.items()),
-                         "fractions  solid fraction of a cell: error and cost of some rules",
-                         "stability  hard cases, each with every operator and scheme",
-                         "needs      each scene against everything on, and its profile"]))
+        print("\n".join([*(f"{name:16} {case[5]}" for name, case in CASES_OF.items()),
+                         *(f"{name:16} {' and '.join(cases)}" for name, cases in GROUPS.items()),
+                         "arrays           error of the drag by solid fraction and cells a diameter",
+                         "fractions        solid fraction of a cell: error and cost of some rules",
+                         "stability        hard cases, each with every operator and scheme",
+                         "needs            each scene against everything on, and its profile"]))
         return 0
     unknown = [c for c in args.cases if c not in names]
     if unknown:
@@ -240,7 +251,7 @@ def main():
         return 0
     OUT.mkdir(parents=True, exist_ok=True)
     start, text, everything = time.monotonic(), [], []
-    for case in args.cases or names:
+    for case in [one for name in args.cases or [*CASES_OF, *OTHERS] for one in GROUPS.get(name, (name,))]:
         if case in OTHERS:
             text += OTHERS[case](args)
             continue

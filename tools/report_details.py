@@ -8,7 +8,7 @@ from launch import CASES
 from pictures import read_table
 from report_stability import step_values
 
-LOADS = {"array": "fx", "spheres": "fx", "cylinder": "fx", "couette": "torque", "settling": "fy"}  # what is measured
+LOADS = {"couette": "torque", "spin": "tz", "settling": "fy"}  # what is measured; fx in all other cases
 FEW = 8  # records, too few to judge noise by
 
 
@@ -24,6 +24,8 @@ def made_with(run, overlay, dimension):
             **{key: found.group(1) for key, found in said.items() if found}}
     keys = ("lattice", "precision", "collision", "scheme", "solid_term")
     made.update({key: numerics[key] for key in keys if numerics.get(key, "auto") != "auto"})
+    if made["scheme"] == "immersed_moving_boundary" and made.get("solid_term", "").endswith("resistance"):
+        return made  # it has no weight
     if made["scheme"] == "immersed_moving_boundary":
         made["weight"] = numerics.get("weight", "viscous" if dimension == 2 else "balanced")
     else:
@@ -33,11 +35,12 @@ def made_with(run, overlay, dimension):
 
 def load_noise(case, run):
     """Standard deviation and largest departure [%] of the load that is measured, over its mean, in the last quarter of
-    the records (of a particle without the last one, which repeats a load); what changes linearly with time is none. Empty where there are few records."""
+    the records (of a particle without the last one, which repeats a load); what changes linearly with time is none.
+    Empty where there are few records."""
     path = run.folder / "obstacles.csv"
     table = read_table(path) if path.exists() else run.probes()
     mine = table["obstacle"] == table["obstacle"].max() if "obstacle" in table else table["time"] < table["time"][-1]
-    load, time = table[LOADS[case]][mine], table["time"][mine]
+    load, time = table[LOADS.get(case, "fx")][mine], table["time"][mine]
     load, time = load[-(len(load) // 4):], time[-(len(time) // 4):]
     if len(load) < FEW:
         return {}
@@ -48,7 +51,7 @@ def load_noise(case, run):
 
 def details(case, run, overlay, again):
     """Columns of a row."""
-    pressure, dimension = run.frame(run.frames()[-1][1])["pressure"], 3 if case == "spheres" else 2
+    pressure, dimension = run.frame(run.frames()[-1][1])["pressure"], 3 if "box_z" in run.parameters else 2
     made, p = made_with(run, overlay, dimension), run.parameters
     of_density = p["density"] * (p["cell"] / p["time_step"])**2 / 3
     row = {**made, "solid_scheme": made["scheme"], "cores": 1, "u_over_c": run.summary["ma_paper"], "density_change": np.nanmax(np.abs(pressure)) / of_density,

@@ -15,7 +15,8 @@ AUTO, RULE = "auto", "by rule"
 SOLIDS = {RULE: {}, "Noble–Torczynski": {"solid_term": "noble_torczynski"}, "Holdych": {"solid_term": "holdych"},
           "superposition": {"solid_term": "superposition"},
           "layered Noble–Torczynski": {"solid_term": "layered_noble_torczynski"},
-          "layered Holdych": {"solid_term": "layered_holdych"},
+          "layered Holdych": {"solid_term": "layered_holdych"}, "resistance": {"solid_term": "resistance"},
+          "layered resistance": {"solid_term": "layered_resistance"},
           "B = ε": {"solid_term": "noble_torczynski", "weight": "fraction"}, "bounce-back": {"scheme": "bounce_back"},
           "interpolated bounce-back": {"scheme": "interpolated_bounce_back"},
           "implicit IBM": {"scheme": "implicit_immersed_boundary"}}
@@ -28,7 +29,7 @@ def choices(full, solids):
     if not solids:
         return [(op, RULE) for op in (AUTO, *OPERATORS)]
     if full:
-        return [(AUTO, RULE), *((op, term) for term in SOLIDS for op in OPERATORS)]
+        return [(AUTO, RULE), *((op, term) for term in SOLIDS for op in OPERATORS if op == "trt" or "resistance" not in term)]
     return [(op, RULE) for op in (AUTO, *OPERATORS)] + [(AUTO, term) for term in SOLIDS if term != RULE] + [PAPERS]
 
 

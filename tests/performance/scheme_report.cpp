@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// `scheme_report [--quick] [--cells N …] [--filter TEXT] [--fractions] [--json FILE]`: every
-/// fluid-solid scheme on the same two cases.
+/// `scheme_report [--quick] [--cells N …] [--filter TEXT] [--fractions|--arrays] [--json FILE]`:
+/// every fluid-solid scheme on the same two cases.
 ///
 /// Fixed disc: square array of cylinders in Stokes flow, c = 0.2, F/(mu U) = 51.526949 (spectral,
 /// agrees with Sangani and Acrivos 1982): error in per cent at D/h = 5, 10, 20 and four relaxation
@@ -9,6 +9,7 @@
 /// mean force, its standard deviation and largest departure over the passage of cells.
 /// Solid fraction: error and cost of chords, exact area and sample points.
 /// Cost: a step with 49 moving discs of ten cells (10 % of 200²) over a step without solids.
+/// --arrays: the drag of discs and spheres by solid fraction and size alone (array_table.h).
 #include <fmt/format.h>
 #include <omp.h>
 
@@ -20,9 +21,11 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/immersed/solid_fraction.h"
 #include "lbm_solver/solver/fluid.h"
 #include "protocol/command_line.h"
+#include "tests/performance/array_table.h"
 #include "tests/reference/disc_area.h"
 
 namespace {
@@ -37,13 +40,15 @@ struct Row {
 };
 
 const std::vector<Row> kRows{
-    {"default, free bodies: TRT, layered Holdych, B(ε,τ)", "trt", "", "layered_holdych"},
+    {"default, bodies at rest: TRT, resistance", "trt", "", "resistance"},
+    {"default, free bodies: TRT, layered resistance", "trt", "", "layered_resistance"},
     {"default above Re_h 5: CM, layered Noble–Torczynski, B(ε,τ)", "central_moment", "",
      "layered_noble_torczynski"},
     {"papers: BGK, Noble–Torczynski, B(ε,τ)", "bgk", "", "noble_torczynski"},
     {"BGK, Noble–Torczynski, B = ε", "bgk", "", "noble_torczynski", WeightRule::Fraction},
     {"TRT, Noble–Torczynski, B(ε,τ)", "trt", "", "noble_torczynski"},
-    {"default, bodies at rest: TRT, Holdych, B(ε,τ)", "trt", "", "holdych"},
+    {"TRT, Holdych, B(ε,τ)", "trt", "", "holdych"},
+    {"TRT, layered Holdych, B(ε,τ)", "trt", "", "layered_holdych"},
     {"TRT, Holdych, B = ε", "trt", "", "holdych", WeightRule::Fraction},
     {"BGK, superposition, B(ε,τ)", "bgk", "", "superposition"},
     {"TRT, superposition, B = ε", "trt", "", "superposition", WeightRule::Fraction},
@@ -60,7 +65,10 @@ Fluid make(const Row& row, const Domain& domain, double tau, const Vec3& force) 
                       "none",
                       force.norm() > 0.0,
                       row.term,
-                      {.tau = tau, .force_x = force.x(), .force_y = force.y()},
+                      {.tau = tau,
+                       .magic = by_resistance(row.term) ? kResistanceMagic : 3.0 / 16.0,
+                       .force_x = force.x(),
+                       .force_y = force.y()},
                       row.weight};
   Fluid fluid(domain, choice);
   if (!row.scheme.empty())
@@ -244,7 +252,7 @@ nlohmann::json fraction_rules() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  bool quick = false, names = false, fractions = false;
+  bool quick = false, names = false, fractions = false, arrays = false;
   std::vector<int> sizes{10, 20, 40};
   std::string json, filter;
   CLI::App app{"Error, noise and cost of every fluid-solid scheme on the same cases"};
@@ -253,6 +261,7 @@ int main(int argc, char** argv) {
   app.add_option("--filter", filter, "rows whose name contains this text");
   app.add_flag("--list", names, "the rows' names, and nothing else");
   app.add_flag("--fractions", fractions, "the table of solid fractions alone");
+  app.add_flag("--arrays", arrays, "the drag by solid fraction and cells a diameter alone");
   app.add_option("--json", json, "write the table to this file");
   if (const auto code = protocol::read_command_line(app, "scheme_report", argc, argv)) return *code;
 
@@ -261,6 +270,7 @@ int main(int argc, char** argv) {
     return protocol::kOk;
   };
   if (fractions) return write(fraction_rules());
+  if (arrays) return write(array_table());
 
   const std::vector<double> taus{0.505, 0.6, 1.0, 1.5};
   if (quick) sizes = {10, 20};

@@ -12,8 +12,9 @@ import report  # noqa: E402
 import report_details  # noqa: E402
 import report_judges  # noqa: E402
 import report_needs  # noqa: E402
+import report_seconds  # noqa: E402
 import report_stability  # noqa: E402
-from report_cases import OURS, PAPERS  # noqa: E402
+from report_cases import AT_REST, FREE, OURS, PAPERS  # noqa: E402
 
 
 def row(scheme, seconds, error, spread=0.0, family=OURS, status="ok"):
@@ -48,6 +49,34 @@ class Recommended(unittest.TestCase):
         self.assertIn("[numerics]\ncell = 2", text)
 
 
+class Seconds(unittest.TestCase):
+    def sizes(self, scheme, *points, tau="τ 1.5"):
+        return [{**row(scheme, seconds, error), "choice": f"D/h {size}, {tau}"} for size, seconds, error in points]
+
+    def test_lie_on_a_line_in_log_log(self):
+        rows = self.sizes("default", (5, 1.0, -4.0), (10, 100.0, 0.25))
+        self.assertAlmostEqual(report_seconds.best(rows, "default")[0], 10.0)
+
+    def test_are_of_the_last_crossing_since_an_error_may_pass_through_zero(self):
+        rows = self.sizes("default", (5, 1.0, -0.1), (10, 10.0, 2.0), (20, 100.0, 0.5))
+        self.assertAlmostEqual(report_seconds.best(rows, "default")[0], 10.0 * 10.0**0.5)
+
+    def test_are_bounds_where_no_size_run_is_beyond_the_limit(self):
+        rows = self.sizes("default", (5, 1.0, -3.0), (10, 10.0, 2.0))
+        self.assertIsNone(report_seconds.best(rows, "default"))
+        rows = self.sizes("default", (5, 1.0, -0.3), (10, 10.0, 0.2))
+        self.assertEqual(report_seconds.best(rows, "default")[:2], (1.0, None))
+
+    def test_are_those_of_the_cheapest_step_and_told_of_the_default_and_the_one_before(self):
+        rows = self.sizes(AT_REST[0], (5, 1.0, -4.0), (10, 100.0, 0.25)) \
+            + self.sizes(AT_REST[0], (5, 0.1, -4.0), (10, 10.0, 0.25), tau="τ 2.5") \
+            + self.sizes(AT_REST[1], (5, 4.0, -4.0), (10, 400.0, 0.25)) \
+            + self.sizes(FREE[0], (5, 4.0, -4.0), (10, 400.0, 0.25))  # with nothing to compare with
+        self.assertEqual(report_seconds.text_of_seconds(rows), [
+            "Seconds to 1 %: default, bodies at rest: TRT, resistance, 1 s (between D/h 5 and D/h 10, τ 2.5); "
+            "TRT, Holdych (former default), 40 s (between D/h 5 and D/h 10, τ 1.5); 40 times less.  "])
+
+
 class Advantage(unittest.TestCase):
     def test_is_told_in_time_and_in_error(self):
         rows = [row("default", 1.0, 1.0), row("papers", 4.0, 2.0, family=PAPERS), row("papers", 0.5, 8.0, family=PAPERS)]
@@ -72,6 +101,8 @@ class Details(unittest.TestCase):
         self.assertEqual(report_details.made_with(run, auto, 2),
                          {"lattice": "D2Q9", "precision": "double", "scheme": "immersed_moving_boundary",
                           "collision": "central_moment", "solid_term": "holdych", "weight": "viscous"})
+        run = self.run_of("collision    trt\nsolids       immersed_moving_boundary, layered_resistance [auto: …]\n", [])
+        self.assertNotIn("weight", report_details.made_with(run, auto, 3))
         links = report_details.made_with(run, {"numerics": {"collision": "bgk", "scheme": "bounce_back"}}, 3)
         self.assertEqual(links, {"lattice": "D3Q19", "precision": "double", "scheme": "bounce_back", "collision": "bgk"})
 
