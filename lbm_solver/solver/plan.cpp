@@ -9,6 +9,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/immersed/resistance.h"
+#include "lbm_solver/solver/expected_error.h"
 #include "lbm_solver/solver/scene_check.h"
 
 namespace lbm {
@@ -18,7 +19,8 @@ constexpr double kStepFractionOfContact = 0.1;  // solid step / √(m/k): the pa
 constexpr double kLimitReynoldsCell = 5.0;      // beyond: fixed-Λ TRT gives noisy forces
 constexpr double kDensityChange = 0.03;         // that a pressure difference may cause
 constexpr double kLeastMagic = 0.05, kLargestMagic = 0.375;  // where resistance is positive
-constexpr double kFewCells = 4.0;  // a diameter below which nothing is claimed
+constexpr double kLargeError = 5.0;  // per cent of drag, above which a scene is warned
+constexpr double kFewCells = 4.0;    // a diameter below which nothing is claimed
 
 double cell_size(const Scene& s) {
   if (s.numerics.cell) return *s.numerics.cell;
@@ -207,6 +209,45 @@ double choose_magic(const Scene& s, const KernelChoice& k) {
   return magic;
 }
 
+/// Part of the box that discs or spheres at rest cover; 0 where there are none.
+double fraction_at_rest(const Scene& s) {
+  double covered = 0.0, box = 1.0;
+  for (int k = 0; k < s.box.dimension; ++k) box *= s.box.size[k];
+  for (const ObstacleScene& o : s.obstacles)
+    if (o.round && !o.hollow)
+      covered += particle_volume(s, o.diameter) / (s.box.dimension == 2 ? s.box.depth : 1.0);
+  return covered / box;
+}
+
+/// What the drag will be off by, and a warning above kLargeError.
+void expect_error(const Scene& s, Plan& plan) {
+  double smallest = s.particles ? s.particles->diameter.lo : 0.0;
+  for (const ObstacleScene& o : s.obstacles)
+    if (o.round && !o.hollow && (smallest == 0.0 || o.diameter < smallest)) smallest = o.diameter;
+  if (smallest == 0.0) return;
+  const int d = s.box.dimension;
+  const double cells = smallest / plan.units.dx;
+  const auto error = [&](double fraction) {
+    return expected_error(plan.kernel.solid_term, d, fraction, cells);
+  };
+  const double loose = s.coupling ? kLooseBed[d - 2] : fraction_at_rest(s);
+  const auto first = error(loose);
+  if (!first) return;
+  plan.expected_error = fmt::format("drag {:+.1f} % at a solid fraction of {:.2g}", *first, loose);
+  double largest = std::abs(*first), where = loose;
+  if (s.coupling) {
+    const double dense = kDenseBed[d - 2], second = *error(dense);
+    plan.expected_error += fmt::format(", {:+.1f} % at {:.2g}", second, dense);
+    if (std::abs(second) > largest) largest = std::abs(second), where = dense;
+  }
+  if (!by_resistance(plan.kernel.solid_term)) plan.expected_error += " (for τ = 1)";
+  if (largest > kLargeError)
+    plan.warnings.push_back(fmt::format(
+        "with {:.3g} cells a diameter the drag is some {:.0f} % off at a solid fraction "
+        "of {:.2g}; take more cells if the bed is that dense",
+        cells, largest, where));
+}
+
 void choose_kernel(const Scene& s, Plan& plan) {
   const NumericsScene& n = s.numerics;
   const double dx = plan.units.dx, dt = plan.units.dt;
@@ -292,6 +333,7 @@ Plan make_plan(const Scene& s, std::optional<double> step) {
   fit_to_end(s, step, plan);
   choose_kernel(s, plan);
   judge_step(s, plan);
+  expect_error(s, plan);
   if (s.coupling) choose_substeps(s, plan);
   check_meaning(s, plan);
   return plan;

@@ -48,8 +48,23 @@ TEST(Plan, WarnsWhereForcesGetNoisyAndWhereCellsAreFew) {
   s = settling_disc();
   s.numerics.cells_per_diameter = 2.5;
   const auto few = make_plan(s).warnings;
-  ASSERT_FALSE(few.empty());
-  EXPECT_NE(few.back().find("D/Δx"), std::string::npos);
+  ASSERT_EQ(few.size(), 2U);  // few cells, and the error that they make
+  EXPECT_NE(few.front().find("D/Δx"), std::string::npos);
+}
+
+TEST(Plan, TellsTheErrorToExpectOfTheDrag) {
+  Scene s = settling_disc();  // 20 cells a diameter: a fraction of a per cent
+  EXPECT_NE(make_plan(s).expected_error.find("drag -0.1 % at a solid fraction of 0.2, -0.7 % at 0.4"),
+            std::string::npos)
+      << make_plan(s).expected_error;
+  s.numerics.cells_per_diameter = 5.0;
+  const Plan coarse = make_plan(s);
+  ASSERT_FALSE(coarse.warnings.empty());
+  EXPECT_NE(coarse.warnings.front().find("7 % off at a solid fraction of 0.4"), std::string::npos)
+      << coarse.warnings.front();
+  s.numerics.collision = "central_moment";
+  s.numerics.solid_term = "auto";
+  EXPECT_TRUE(make_plan(s).expected_error.empty());  // no table for that
 }
 
 TEST(Plan, AutoTakesTheOperatorThatSuitsAndSaysWhy) {
