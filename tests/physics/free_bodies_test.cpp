@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/bodies_in_flow.h"
 #include "tests/support/free_disc.h"
 #include "tests/support/openings.h"
 #include "tests/support/scheme_fluid.h"
@@ -190,6 +191,80 @@ TEST(Averaging, OverSeveralFluidStepsKeepsTheTerminalVelocity) {
   };
   const double one = speed(1);
   for (const int fluid_steps : {2, 5, 10}) EXPECT_NEAR(speed(fluid_steps) / one, 1.0, 0.01);
+}
+
+/// Bodies on a lattice of places in a periodic box, each free to move and turn, coupled as the
+/// programs are; they start with random velocities and are left alone. What is left of their
+/// kinetic energy, over that at the start; not a number where it blows up.
+double energy_left(int dimension, int a_side, double radius, int box, double tau, double ratio,
+                   int steps) {
+  const bool flat = dimension == 2;
+  const Domain domain{box, box, Side::Periodic, Side::Periodic, flat ? 1 : box, Side::Periodic};
+  Scene scene;
+  scene.box.dimension = dimension;
+  scene.fluid = {.density = 1.0, .viscosity = (tau - 0.5) / 3.0};
+  scene.coupling.emplace();
+  scene.particles.emplace().density = {ratio, ratio};
+  Fluid fluid = test::slow_fluid("layered_resistance", domain, tau, Vec3());
+  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene, domain, "layered_resistance");
+  const double pi = std::numbers::pi;
+  const double mass = ratio * pi * radius * radius * (flat ? 1.0 : 4.0 / 3.0 * radius);
+  const double inertia = (flat ? 0.5 : 0.4) * mass * radius * radius;
+  std::vector<protocol::Particle> all;
+  unsigned state = 1;
+  const auto noise = [&state] {  // the same on every machine
+    state = state * 1664525U + 1013904223U;
+    return 2e-4 * (state / 4294967296.0 - 0.5);
+  };
+  const double spacing = static_cast<double>(box) / a_side;
+  for (int k = 0; k < (flat ? 1 : a_side); ++k)
+    for (int j = 0; j < a_side; ++j)
+      for (int i = 0; i < a_side; ++i) {
+        protocol::Particle p;
+        p.state.id = p.shape.id = static_cast<std::int64_t>(all.size()) + 1;
+        p.state.x = {(i + 0.53) * spacing, (j + 0.41) * spacing, flat ? 0.0 : (k + 0.47) * spacing};
+        p.state.v = {noise(), noise(), flat ? 0.0 : noise()};
+        p.state.omega = {0.0, 0.0, noise() / radius};
+        p.shape = {p.state.id, radius, mass, inertia, 1};
+        all.push_back(p);
+      }
+  const auto energy = [&] {
+    double sum = 0.0;
+    for (const auto& p : all)
+      for (int k = 0; k < 3; ++k)
+        sum += 0.5 * mass * p.state.v[k] * p.state.v[k] +
+               0.5 * inertia * p.state.omega[k] * p.state.omega[k];
+    return sum;
+  };
+  const double start = energy();
+  for (int step = 0; step < steps; ++step) {
+    particles.arrive(all, 1.0);
+    fluid.place(particles.bodies(0.0));
+    fluid.step();
+    particles.add(fluid.loads());
+    const auto loads = particles.mean_loads(1);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        protocol::State& s = all[i].state;
+        if (!flat || k < 2) s.v[k] += loads[i].force[k] / mass;
+        if (!flat || k == 2) s.omega[k] += loads[i].torque[k] / inertia;
+        s.x[k] += s.v[k];
+      }
+  }
+  return energy() / start;
+}
+
+TEST(FreeSuspension, ComesToRestHoweverDense) {
+  // Fluid and bodies share the momentum that the bodies began with, so a part of it remains.
+  // 0.39 of the area, and 0.44 of the volume, half a cell apart: those of a cubic array touch at
+  // 0.52.
+  for (const double ratio : {1.0, 2.17})
+    for (const double tau : {0.505, 0.55, 1.5}) {
+      const double discs = energy_left(2, 3, 4.0, 34, tau, ratio, 3000);
+      EXPECT_LT(discs, 0.5) << "discs τ " << tau << " ρ " << ratio;
+      const double spheres = energy_left(3, 2, 4.0, 17, tau, ratio, 3000);
+      EXPECT_LT(spheres, 0.5) << "spheres τ " << tau << " ρ " << ratio;
+    }
 }
 
 }  // namespace

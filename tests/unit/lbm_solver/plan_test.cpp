@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lbm_solver/coupling/hello.h"
@@ -48,8 +49,10 @@ TEST(Plan, WarnsWhereForcesGetNoisyAndWhereCellsAreFew) {
   s = settling_disc();
   s.numerics.cells_per_diameter = 2.5;
   const auto few = make_plan(s).warnings;
-  ASSERT_EQ(few.size(), 2U);  // few cells, and the error that they make
-  EXPECT_NE(few.front().find("D/Δx"), std::string::npos);
+  for (const char* part : {"D/Δx", "2.5 cells a diameter the drag"})  // few, and what they cost
+    EXPECT_TRUE(std::ranges::any_of(few, [part](const std::string& w) {
+      return w.find(part) != std::string::npos;
+    })) << part;
 }
 
 TEST(Plan, TellsTheErrorToExpectOfTheDrag) {
