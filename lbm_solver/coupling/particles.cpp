@@ -76,8 +76,10 @@ void Particles::arrive(std::span<const protocol::Particle> particles, double int
     const auto change = [this](const protocol::Vec3& now, const protocol::Vec3& past,
                                const protocol::Vec3& past_mean, protocol::Vec3& change,
                                protocol::Vec3& mean) {
-      // A mean that has not begun takes all of the first change.
-      const double weight = past_mean == protocol::Vec3{} ? 1.0 : light_.mean_weight;
+      // Let go from rest, a particle's acceleration is new but lasts: the mean begins with it.
+      // (With any other first change it would give back more momentum than the fluid inside has.)
+      const protocol::Vec3 none{};
+      const double weight = past_mean == none && past == none ? 1.0 : light_.mean_weight;
       for (int k = 0; k < 3; ++k) {
         change[k] = now[k] - past[k];
         mean[k] = std::lerp(past_mean[k], change[k], weight);
