@@ -74,8 +74,13 @@ class Seconds(unittest.TestCase):
             + self.sizes(AT_REST[1], (5, 4.0, -4.0), (10, 400.0, 0.25)) \
             + self.sizes(FREE[0], (5, 4.0, -4.0), (10, 400.0, 0.25))  # with nothing to compare with
         self.assertEqual(report_seconds.text_of_seconds(rows), [
-            "Seconds to 1 %: default, bodies at rest: TRT, resistance, 1 s (between D/h 5 and D/h 10, τ 2.5); "
-            "TRT, Holdych (former default), 40 s (between D/h 5 and D/h 10, τ 1.5); 40 times less.  "])
+            "Seconds to 1 %: default, bodies at rest: TRT, resistance, 1 s (between D/h 5 and D/h 10, τ 2.5, "
+            "where its error changes sign); TRT, Holdych (former default), 40 s (between D/h 5 and D/h 10, τ 1.5, where its error "
+            "changes sign): 40 times less.  "])
+
+    def test_say_where_an_error_grows_again(self):
+        rows = self.sizes("default", (5, 1.0, -3.0), (10, 10.0, 0.2), (20, 100.0, 1.1))
+        self.assertEqual(report_seconds.said(rows, "default"), "not reached for good: less at D/h 10, more again at the finest run")
 
 
 class Arrays(unittest.TestCase):
