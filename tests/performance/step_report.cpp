@@ -169,9 +169,11 @@ class Cases {
 
   double none() const {
     Scene scene = scene_of(numerics_, 48, 44, 0.7);
-    Fluid with = make_fluid(scene, make_plan(scene));
+    const Plan plan = make_plan(scene);
+    Fluid with = make_fluid(scene, plan);
     scene.coupling.reset();
     scene.particles.reset();
+    scene.numerics.magic = plan.kernel.parameters.magic;  // which the solid collision may choose
     scene.numerics.scheme = scene.numerics.solid_term = "auto";
     Fluid without = make_fluid(scene, make_plan(scene));
     stir(with);
