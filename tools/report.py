@@ -14,13 +14,15 @@ import platform
 import re
 import subprocess
 import sys
+import textwrap
 import time
 
 import matplotlib.pyplot as plt
 import numpy as np
 from launch import ROOT
+from matplotlib.ticker import LogFormatterSciNotation
 from pictures import Run
-from report_arrays import arrays, draw_arrays, text_of_arrays
+from report_arrays import arrays, draw_arrays, text_of_arrays, write_arrays
 from report_cases import CASES_OF, FORMER, GROUPS, OURS, PAPERS, SCHEMES, STAIRS
 from report_details import details
 from report_fractions import fractions, text_of_fractions
@@ -33,6 +35,7 @@ PASTED = ("fluid", "numerics", "coupling")  # tables of an overlay that a recomm
 COLUMNS = ("Error: mean over places of the body within a cell, spread: its range over them. Load σ: root mean square of what the "
            "measured load does beside a line in the last quarter of a run, over its mean; – where there are few records. "
            "Seconds: of the fluid, without waiting. `rows.csv` has some twenty columns more.")
+WIDTH = 120  # columns of prose
 SCATTER = 1.2  # of the time of the same run on a shared machine
 
 
@@ -149,6 +152,8 @@ def draw(case, rows):
         axes.axhspan(1e-2, uncertainty, color="0.9", zorder=-1)
     axes.set_xscale("log")
     axes.set_yscale("log")
+    axes.set_ylim(bottom=max(7e-3, axes.get_ylim()[0]))  # a mark on 1e-2 is at most that
+    axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(1.6, 0.5)))  # where decades are few
     draw_unstable(axes, [r for r in rows if r["status"] != "ok"], colors)
     axes.set_xlabel("seconds of the fluid to the solution, one core")
     axes.set_ylabel("|error| [%]")
@@ -201,6 +206,19 @@ def text_of(case, rows):
     return lines + [""]
 
 
+def wrapped(lines):
+    """Prose of at most 120 columns; tables, pictures and headings as they are."""
+    short = []
+    for line in lines:
+        if len(line) <= WIDTH or line.startswith(("|", "!", "#")):
+            short.append(line)
+            continue
+        end = "  " if line.endswith("  ") else ""  # a break that stays
+        short += textwrap.wrap(line, WIDTH - len(end), break_long_words=False, break_on_hyphens=False)
+        short[-1] += end
+    return short
+
+
 def kept(name, rows):
     """Writes rows to a file of their own."""
     (OUT / f"{name}.json").write_text(json.dumps(rows, indent=1) + "\n")
@@ -209,6 +227,7 @@ def kept(name, rows):
 
 def arrays_case(args):
     rows = arrays(args.again)
+    write_arrays(rows)
     draw_arrays(rows)
     return text_of_arrays(rows)
 
@@ -259,7 +278,7 @@ def main():
         draw(case, rows)
         text += text_of(case, rows)
         everything += rows
-    (OUT / "report.md").write_text("\n".join([f"# Speed against error\n\n{machine()}\n", COLUMNS, "", *text]) + "\n")
+    (OUT / "report.md").write_text("\n".join(wrapped(["# Speed against error", "", machine(), "", COLUMNS, "", *text])) + "\n")
     if everything:
         (OUT / "rows.json").write_text(json.dumps(everything, indent=1) + "\n")
         columns = list(dict.fromkeys(key for row in everything for key in row if key != "time_share"))

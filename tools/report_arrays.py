@@ -1,5 +1,6 @@
 """Error of the drag by solid fraction and cells a diameter: scheme_report's table of arrays and a picture of it."""
 
+import csv
 import json
 import subprocess
 
@@ -21,6 +22,16 @@ def arrays(again):
     rows = json.loads(kept.read_text())
     progress("arrays", f"{len(rows['rest'])} arrays at rest, {len(rows['moving'])} that move")
     return rows
+
+
+def write_arrays(tables):
+    """arrays.csv: the rows at rest, three digits."""
+    with open(OUT / "arrays.csv", "w", newline="") as f:
+        writer = csv.DictWriter(f, ("body", "solid_term", "fraction", "tau", "cells", "diameter", "error_percent",
+                                    "spread_percent"), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({key: round(value, 3) if key in ("diameter", "error_percent", "spread_percent") and value is not None
+                          else value for key, value in row.items()} for row in tables["rest"])
 
 
 def at_one(rows, body, term):
@@ -64,8 +75,8 @@ def text_of_arrays(tables):
     lines = ["## Error of the drag by solid fraction", "", "![arrays](arrays.png)", "",
              "Square arrays of discs (Sangani and Acrivos 1982) and simple cubic ones of spheres (Zick and Homsy 1982) at rest in "
              "Stokes flow, τ = 1: error in per cent, mean over four places of the body within a cell, in brackets their range, "
-             "and the cells a diameter, which a whole number of cells a period gives. `scheme_report --arrays --json FILE` "
-             "writes the same as a list.", ""]
+             "and the cells a diameter, which a whole number of cells a period gives. The same as a list: [arrays.csv](arrays.csv), "
+             "or `scheme_report --arrays --json FILE`.", ""]
     for term, name in NAMES.items():
         columns = max(len(mine) for mine in at_one(rows, "disc", term).values())
         lines += [f"**{name}**", "", "| array | " + " | ".join(f"D about {d}" for d in (4, 5, 6, 8, 10, 16)) + " |",

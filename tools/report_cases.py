@@ -113,7 +113,7 @@ def sphere_at(n, place, diameter, size=1e-3, **spin):
 def dense_rows(full, dimension, diameter, cells, end):
     """Bodies [m] in a box of 1 mm, some numbers of cells, at rest; all schemes take the same time to the end."""
     for label, (family, numerics) in compared(SCHEMES if dimension == 2 else SPHERE_SCHEMES).items():
-        for n in cells + ((2 * cells[-1],) if full else ()):
+        for n in cells + ((3 * cells[-1] // 2,) if full else ()):
             for tau in (0.6, 1.5):
                 if tau < 1.0 and n not in (cells if full else cells[1:2]):
                     continue
@@ -121,8 +121,8 @@ def dense_rows(full, dimension, diameter, cells, end):
                 steps = round(end / step)  # fields of the last two of them
                 places = [{"obstacle": [sphere_at(n, place, diameter)],
                            "numerics": {**numerics, "cell": 1e-3 / n, "time_step": step},
-                           "run": {"end_time": (steps - 0.5) * step, "steady_below": 0.0},  # half: so that it is not one more
-                           "output": {"fields_every": (steps - 2) * step, "probe_every": end / 40}}
+                           "run": {"end_time": (steps - 0.5) * step, "steady_below": 0.0},  # halves: so that rounding plays no part
+                           "output": {"fields_every": (steps - 2.5) * step, "probe_every": end / 40}}
                           for place in (PLACES if dimension == 2 else SPHERE_PLACES)]
                 yield label, family, f"D/h {1e3 * diameter * n:.1f}, τ {tau}", places, ()
 
@@ -235,11 +235,11 @@ CASES_OF = {  # scene, rows, measure, reference, its uncertainty, source
               "drag of a square array, Stokes flow; spectral, Sangani and Acrivos 1982"),
     "spheres": ("sphere_array", sphere_rows, lambda run, m: m.drag(run), 4.292, 2e-4,
                 "drag of a cubic array of spheres, Stokes flow; Zick and Homsy 1982"),
-    "dense_discs": ("cylinder_array", lambda full: dense_rows(full, 2, 7.136496e-4, (7, 10, 14, 20), 2.0), dense_drag,
+    "dense_discs": ("cylinder_array", lambda full: dense_rows(full, 2, 7.136496e-4, (7, 10, 14, 20, 28, 40), 2.0), dense_drag,
                     217.894315, 3e-4, "drag of a square array of solid fraction 0.4, Stokes flow; spectral"),
-    "dense_spheres": (*dense_spheres(0.343, 15.4, (7, 9, 12, 18), 1.0), 4e-3,
+    "dense_spheres": (*dense_spheres(0.343, 15.4, (7, 9, 12, 18, 24), 1.0), 4e-3,
                       "drag of a cubic array of solid fraction 0.343, Stokes flow; Zick and Homsy 1982"),
-    "touching_spheres": (*dense_spheres(np.pi / 6, 42.1, (6, 8, 12, 16), 1.0), 2e-3,
+    "touching_spheres": (*dense_spheres(np.pi / 6, 42.1, (6, 8, 12, 16, 24), 1.0), 2e-3,
                          "drag of a cubic array of spheres that touch, Stokes flow; Zick and Homsy 1982"),
     "cylinder": ("cylinder_flow", cylinder_rows, lambda run, m: m.coefficients(run)[1][-1], 5.57953523384, 1e-6,
                  "drag of a cylinder at Re 20; Schäfer and Turek 2D-1"),

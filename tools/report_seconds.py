@@ -40,21 +40,35 @@ def best(rows, scheme):
     return min(filter(None, (reached(mine) for mine in series(rows, scheme).values())), key=lambda found: found[0], default=None)
 
 
-def said(found):
+def said(rows, scheme):
+    found = best(rows, scheme)
     if not found:
-        return "not reached"
+        mine = [r for one in series(rows, scheme).values() for r in one if doubt(r) <= WANTED]
+        below = list(dict.fromkeys(r["choice"].partition(",")[0] for r in mine))
+        return f"not reached for good: less at {', '.join(below)}, more again at the finest run" if below else "not reached"
     seconds, a, b = found
-    between = f"between {a['choice'].partition(',')[0]} and {b['choice']}" if a else f"at most, {b['choice']}, the coarsest run"
-    return f"{seconds:.2g} s ({between})"
+    if not a:
+        return f"{seconds:.2g} s at most ({b['choice']}, the coarsest run)"
+    sign = ", where its error changes sign" if a["error_percent"] * b["error_percent"] < 0 else ""
+    return f"{seconds:.2g} s (between {a['choice'].partition(',')[0]} and {b['choice']}{sign})"
 
 
-def text_of_seconds(rows, wanted=WANTED):
+def compared(new, former):
+    """How the times of two schemes compare, where they are known."""
+    if not new or not former or not former[1]:
+        return ""
+    factor = former[0] / new[0]
+    if not new[1]:
+        return f": at least {factor:.2g} times less" if factor > 1 else ""
+    return f": {factor:.2g} times less" if factor > 1 else f": {1 / factor:.2g} times more"
+
+
+def text_of_seconds(rows):
     """A sentence on bodies at rest and one on free ones."""
     lines = []
     for new, former in (AT_REST, FREE):
         if not any(r["scheme"] == new for r in rows) or not any(r["scheme"] == former for r in rows):
             continue
-        a, b = best(rows, new), best(rows, former)
-        factor = f"; {b[0] / a[0]:.2g} times less" if a and b else ""
-        lines.append(f"Seconds to {wanted:g} %: {new}, {said(a)}; {former}, {said(b)}{factor}.  ")
+        lines.append(f"Seconds to {WANTED:g} %: {new}, {said(rows, new)}; {former}, {said(rows, former)}"
+                     f"{compared(best(rows, new), best(rows, former))}.  ")
     return lines

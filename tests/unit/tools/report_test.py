@@ -9,6 +9,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 import numpy as np  # noqa: E402
 import report  # noqa: E402
+import report_arrays  # noqa: E402
 import report_details  # noqa: E402
 import report_judges  # noqa: E402
 import report_needs  # noqa: E402
@@ -73,8 +74,31 @@ class Seconds(unittest.TestCase):
             + self.sizes(AT_REST[1], (5, 4.0, -4.0), (10, 400.0, 0.25)) \
             + self.sizes(FREE[0], (5, 4.0, -4.0), (10, 400.0, 0.25))  # with nothing to compare with
         self.assertEqual(report_seconds.text_of_seconds(rows), [
-            "Seconds to 1 %: default, bodies at rest: TRT, resistance, 1 s (between D/h 5 and D/h 10, τ 2.5); "
-            "TRT, Holdych (former default), 40 s (between D/h 5 and D/h 10, τ 1.5); 40 times less.  "])
+            "Seconds to 1 %: default, bodies at rest: TRT, resistance, 1 s (between D/h 5 and D/h 10, τ 2.5, "
+            "where its error changes sign); TRT, Holdych (former default), 40 s (between D/h 5 and D/h 10, τ 1.5, where its error "
+            "changes sign): 40 times less.  "])
+
+    def test_say_where_an_error_grows_again(self):
+        rows = self.sizes("default", (5, 1.0, -3.0), (10, 10.0, 0.2), (20, 100.0, 1.1))
+        self.assertEqual(report_seconds.said(rows, "default"), "not reached for good: less at D/h 10, more again at the finest run")
+
+
+class Arrays(unittest.TestCase):
+    def test_are_a_row_a_solid_fraction_and_a_column_a_size(self):
+        row = {"body": "disc", "solid_term": "holdych", "fraction": 0.2, "tau": 1.0, "error_percent": -1.5, "spread_percent": 0.25}
+        rows = [{**row, "cells": 20, "diameter": 10.09}, {**row, "cells": 8, "diameter": 4.04},
+                {**row, "cells": 20, "diameter": 10.09}, {**row, "cells": 8, "diameter": 4.04, "tau": 2.0}]
+        self.assertEqual([r["cells"] for r in report_arrays.at_one(rows, "disc", "holdych")[0.2]], [8, 20])
+        self.assertEqual(report_arrays.cell(rows[0]), "-1.50 (0.25) D10.1")
+        self.assertEqual(report_arrays.cell({**rows[0], "error_percent": None}), "no end")
+
+
+class Text(unittest.TestCase):
+    def test_is_wrapped_but_for_tables_and_keeps_its_breaks(self):
+        lines = report.wrapped(["word " * 50 + " ", "| " + "a | " * 50, "short  "])
+        self.assertLessEqual(max(map(len, lines[:-2])), report.WIDTH)
+        self.assertTrue(lines[-3].endswith("word  "))
+        self.assertEqual(lines[-2:], ["| " + "a | " * 50, "short  "])
 
 
 class Advantage(unittest.TestCase):
