@@ -241,15 +241,21 @@ void register_setting(const Setting& on, int threads) {
         {.collision = collision, .turbulence = "smagorinsky", .parameters = {.smagorinsky = 0.1}});
   add_kernel(on.entry("trt+force"),
              {.collision = "trt", .force = true, .parameters = {.force_x = 1e-7}});
-  const KernelChoice solids{.collision = "trt", .solid_term = "layered_holdych"};
+  const KernelChoice solids{.collision = "trt", .solid_term = "layered_resistance"};
+  const KernelChoice linear{.collision = "trt", .solid_term = "layered_holdych"};
   for (const double covered : {0.0, 0.1, 0.15, 0.4})
     for (const bool moving : {false, true}) {
       if (covered == 0.0 && moving) continue;
-      Entry e =
-          on.entry(fmt::format("trt {} {:.0f} %", moving ? "coupled" : "covered", 100 * covered));
+      const char* what = moving ? "coupled" : "covered";
+      Entry e = on.entry(fmt::format("trt {} {:.0f} %", what, 100 * covered));
       e.covered = covered;
       e.moving = moving;
       add_kernel(e, solids);
+      if (covered == 0.0) continue;
+      Entry other = on.entry(fmt::format("trt {} {:.0f} %, Holdych", what, 100 * covered));
+      other.covered = covered;
+      other.moving = moving;
+      add_kernel(other, linear);
     }
   const Entry aos = on.entry("AoS two lattices");
   if (on.precision == Precision::Double)
