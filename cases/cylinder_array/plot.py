@@ -8,7 +8,7 @@ from pictures import Run, drag_results, draw_errors, draw_speed, read_table, stu
 
 DRAG = 51.526949  # F/(mu U) at c = 0.2
 SOURCE = "spectral solution of the Stokes flow; Sangani and Acrivos 1982 within 0.03 %"
-# 0.5 %: by the place of the cylinder within its cell the error differs by 0.4 % at ten cells, 0.1 % at 20 (scheme_report)
+# 0.5 %: by the place of the cylinder within its cell the error differs by 0.4 % at ten cells, by 0.1 % at 20
 TOLERANCE = FINE_TOLERANCE = 0.005
 
 
