@@ -13,8 +13,8 @@ def main():
     run = Run(sys.argv[1])
     probe, p = run.probes(), run.parameters
     run.write_results([
-        # 2 %: D/H = 0.1, Re = 0.1, and ten cells across; the target
-        result("angular velocity", probe["omega"][-1], "1/s", -SHEAR / 2, "-γ/2, Stokes flow", 0.02),
+        # 1 %: D/H = 0.1, Re = 0.1, and ten cells across
+        result("angular velocity", probe["omega"][-1], "1/s", -SHEAR / 2, "-γ/2, Stokes flow", 0.01),
         result("drift of the centre", probe["y"][-1], "m", p["box_y"] / 2,
                "symmetry; 0.1 % of a diameter", 0.001, scale=p["diameter"])])
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.0, 3.0))

@@ -176,11 +176,12 @@ def draw_pressure(axes, bed, name, largest):
     frame, p, ratio = bed.run.frame(name), bed.run.parameters, bed.ratio()
     edge = "white" if ratio < 0.99 else "0.5"
     image = axes.imshow(frame["pressure"], origin="lower", extent=[0, 1e3 * p["box_x"], 0, 1e3 * p["box_y"]],
-                        cmap="viridis", vmin=0, vmax=largest)
+                        cmap="viridis", vmin=0, vmax=largest, interpolation="nearest")
     for _, x, y, radius, *_ in frame["particles"]:
-        at = (1e3 * x, 1e3 * y)
-        axes.add_patch(plt.Circle(at, 1e3 * radius * ratio, facecolor="white", edgecolor="none"))
-        axes.add_patch(plt.Circle(at, 1e3 * radius, facecolor="none", edgecolor=edge, linewidth=0.5))
+        for image_of in (-1, 0, 1):  # through the periodic sides
+            at = (1e3 * (x + image_of * p["box_x"]), 1e3 * y)
+            axes.add_patch(plt.Circle(at, 1e3 * radius * ratio, facecolor="white", edgecolor="none"))
+            axes.add_patch(plt.Circle(at, 1e3 * radius, facecolor="none", edgecolor=edge, linewidth=0.5))
     axes.axhline(1e3 * FLOOR, color="tab:red", linewidth=1.2, linestyle="--")
     axes.set_xlim(0, 1e3 * p["box_x"])
     axes.set_ylim(0, 1e3 * p["box_y"])
