@@ -57,8 +57,9 @@ TEST(Plan, WarnsWhereForcesGetNoisyAndWhereCellsAreFew) {
 
 TEST(Plan, TellsTheErrorToExpectOfTheDrag) {
   Scene s = settling_disc();  // 20 cells a diameter: a fraction of a per cent
-  EXPECT_NE(make_plan(s).expected_error.find("drag -0.1 % at a solid fraction of 0.2, -0.7 % at 0.4"),
-            std::string::npos)
+  EXPECT_NE(
+      make_plan(s).expected_error.find("drag -0.1 % at a solid fraction of 0.2, -0.7 % at 0.4"),
+      std::string::npos)
       << make_plan(s).expected_error;
   s.numerics.cells_per_diameter = 5.0;
   const Plan coarse = make_plan(s);
