@@ -11,7 +11,7 @@ namespace lbm {
 /// populations that arrived: the weight of the cell's collision, or with a term by resistance half
 /// of the momentum that it exchanges. It is 1 where a cell is covered whole.
 ///
-/// With a term by resistance the ghost's part C z of that exchange goes off as well. Then it is the
+/// With a term by resistance the ghost's part Γ z of that exchange goes off as well. Then it is the
 /// velocity half-way through the collision: the mean of what enters and leaves the cell, so that
 /// the mean over a box is the flux through it.
 ///
@@ -37,7 +37,7 @@ class SolidShare {
   }
 
   bool takes_ghost() const { return by_resistance_; }
-  /// C: a component of the momentum half-way through the collision has C z less. @param cover, tau
+  /// Γ: a component of the momentum half-way through the collision has Γ z less. @param cover, tau
   /// as above
   template <class L, class V>
   V of_ghost(const V& cover, const V& tau) const {
