@@ -1,4 +1,4 @@
-"""tools/launch.py judges results and maps exit codes; no program is started."""
+"""tools/run judges results and maps exit codes; no program is started."""
 
 import contextlib
 import io
@@ -12,8 +12,9 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-import launch  # noqa: E402
-from pictures import result  # noqa: E402
+from bplbm import result, run  # noqa: E402
+from bplbm.options import arguments, scene_files  # noqa: E402
+from bplbm.scenes import find  # noqa: E402
 
 
 class Result(unittest.TestCase):
@@ -40,11 +41,11 @@ class Launch(unittest.TestCase):
                 return job_code
 
             text = io.StringIO()
-            with mock.patch.object(launch, "run_job", job), mock.patch.object(launch, "draw"), \
+            with mock.patch.object(run, "run_job", job), mock.patch.object(run, "draw"), \
                     mock.patch.object(sys, "argv", ["run", *arguments, "--out", folder]), \
                     contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
                 try:
-                    return launch.main(), text.getvalue()
+                    return run.main(), text.getvalue()
                 except SystemExit as end:
                     return end.code, text.getvalue()
 
@@ -69,8 +70,8 @@ class Launch(unittest.TestCase):
             self.assertIn(expected, text)
 
     def test_own_choices_become_overlays(self):
-        args = launch.arguments(["disc_migration", "--start", "6", "--initial", "rest"])
-        self.assertEqual([pathlib.Path(f).name for f in launch.scene_files(args)],
+        args = arguments(["disc_migration", "--start", "6", "--initial", "rest"])
+        self.assertEqual([pathlib.Path(f).name for f in scene_files(args)],
                          ["scene.toml", "start-6.toml", "initial-rest.toml"])
         for words, expected in ((["--start", "4"], "5, 6, 7, 8, 9, all"), (["--end", "4"], "knows no '--end'")):
             code, text = self.run_main("disc_migration", *words)
@@ -78,14 +79,14 @@ class Launch(unittest.TestCase):
             self.assertIn(expected, text)
 
     def test_all_values_of_a_choice_are_the_run_and_its_comparisons(self):
-        args = launch.arguments(["disc_migration", "--start", "all"])
-        self.assertEqual(launch.comparison_runs(args), [["--start", v] for v in "6789"])
+        args = arguments(["disc_migration", "--start", "all"])
+        self.assertEqual(run.comparison_runs(args), [["--start", v] for v in "6789"])
         self.assertEqual(args.own, [("start", "5")])
 
     def test_the_command_names_both_programs_by_absolute_path(self):
-        args = mock.Mock(scene="settling_disc", set="fine", variant="d10", own=[], engine="liggghts", threads=2, until=None,
+        args = mock.Mock(scene=find("settling_disc"), overlay=[], set="fine", variant="d10", own=[], engine="liggghts", threads=2, until=None,
                          record=None, restart=False, fluid_ranks=1, solid_ranks=3)
-        line = launch.command(args, pathlib.Path("/somewhere"))
+        line = run.command(args, pathlib.Path("/somewhere"))
         split = line.index(":")
         self.assertTrue(line[line.index("1") + 1].endswith("/bin/lbm"))
         self.assertTrue(line[split + 3].startswith("/") and line[split + 3].endswith("/bin/liggghts"))

@@ -1,13 +1,11 @@
-"""Reading a run's output folder, judging results, and drawing in one style."""
+"""Drawing runs in one style."""
 
-import json
-import pathlib
-
-import h5py
-import matplotlib.pyplot as plt
-import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.collections import LineCollection, PatchCollection
+import matplotlib.pyplot as plt
+import numpy as np
+
+from bplbm.results import read_table, result
 
 plt.rcParams.update({
     "figure.dpi": 130, "font.size": 9, "axes.spines.top": False, "axes.spines.right": False,
@@ -15,74 +13,6 @@ plt.rcParams.update({
 })
 
 UNITS = {1.0: "m", 1e-2: "cm", 1e-3: "mm"}
-
-
-def read_table(path):
-    """Columns of a CSV file of ours: dict name -> array."""
-    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
-    return {name: rows[name] for name in rows.dtype.names}
-
-
-def studies(run):
-    """The comparison runs beside a run, by name of their folder."""
-    return {f.name: Run(f) for f in sorted((run.folder / "study").glob("*"))
-            if (f / "summary.json").exists()}
-
-
-class Run:
-    """The output folder of one run."""
-
-    def __init__(self, folder):
-        self.folder = pathlib.Path(folder)
-        self.summary = json.loads((self.folder / "summary.json").read_text())
-        self.parameters = self.summary["parameters"]
-
-    def probes(self, particle=1):
-        """Columns of probes.csv of one particle: dict name -> array, SI units."""
-        table = read_table(self.folder / "probes.csv")
-        mine = table["id"] == particle
-        return {name: column[mine] for name, column in table.items()}
-
-    def frames(self):
-        """Times and names of the field frames."""
-        with h5py.File(self.folder / "fields.h5") as f:
-            return [(f[name].attrs["time"], name) for name in sorted(f)]
-
-    def frame(self, name):
-        """One frame: velocity [ny][nx][3], pressure [ny][nx], particles [n][8], SI units."""
-        with h5py.File(self.folder / "fields.h5") as f:
-            return {key: f[name][key][...] for key in f[name]}
-
-    def save(self, figure, name):
-        figure.savefig(self.folder / name, bbox_inches="tight")
-        plt.close(figure)
-
-    def write_results(self, results, quantities=()):
-        """Puts judged results, and quantities to know, into summary.json, whole or not at all."""
-        self.summary["results"] = results
-        self.summary["quantities"] = list(quantities)
-        part = self.folder / "summary.json.part"
-        part.write_text(json.dumps(self.summary, indent=2) + "\n")
-        part.replace(self.folder / "summary.json")
-
-
-def result(name, value, unit, reference, source, tolerance, scale=None):
-    """A judged number. error = (value - reference) / scale; scale defaults to the reference."""
-    value, reference = float(value), float(reference)
-    error = (value - reference) / (abs(reference) if scale is None else scale)
-    return {"name": name, "value": value, "unit": unit, "reference": reference, "source": source,
-            "error": error, "tolerance": tolerance, "pass": bool(abs(error) <= tolerance)}
-
-
-def quantity(name, value, unit):
-    """A number that is told, not judged: there is no reference for it."""
-    return {"name": name, "value": float(value), "unit": unit}
-
-
-def write_table(path, columns):
-    """A CSV file of columns of equal length: dict name -> array."""
-    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns),
-               comments="", fmt="%.8g")
 
 
 def draw_speed(axes, run, name, vmax, length_unit=1e-2):

@@ -10,7 +10,8 @@ import pathlib
 import sys
 
 import numpy as np
-from pictures import Run, read_table
+
+from bplbm.results import Run, read_table
 
 ALIKE = 1e-10
 

@@ -3,10 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from report_cases import array_run, step_of
-from report_judges import (alike, at_most, breaks_alike, burst, carried, channel, drift, flat, jump, noise, noises, order,
+from bplbm.project import ROOT
+from bplbm.report.cases import array_run, step_of
+from bplbm.report.judges import (alike, at_most, breaks_alike, burst, carried, channel, drift, flat, jump, noise, noises, order,
                            overshoot, rest, rises, same_way, street, told, warned)
-from report_runs import ROOT, merged
+from bplbm.report.runs import merged
 
 BONDS = ROOT / "tests" / "hard"  # scenes that are hard cases and nothing else
 

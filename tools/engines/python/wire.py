@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The solid's side of the wire for an engine in Python, on one rank, with one fluid rank; from protocol/README.md alone.
 
-    with bplbm.Solid("my engine") as fluid:
+    with wire.Solid("my engine") as fluid:
         fluid.agree(box_lo, box_hi, periodic, gravity, step, substeps)
         while (loads := fluid.exchange(states, shapes)) is not None:
             ...  # substeps with loads["force"] [N] and loads["torque"] [N m]; then new states, and shapes

@@ -5,7 +5,9 @@ import json
 import subprocess
 
 import matplotlib.pyplot as plt
-from report_runs import BIN, OUT, progress
+
+from bplbm.project import BIN
+from bplbm.report.runs import OUT, progress
 
 NAMES = {"resistance": "default, bodies at rest: TRT, resistance",
          "layered_resistance": "default, free bodies: TRT, layered resistance",

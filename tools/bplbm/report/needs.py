@@ -3,12 +3,13 @@ leaving the others out saves, and where a coupled interval goes on both sides.""
 
 import re
 import subprocess
-import tomllib
 
-from launch import CASES, scenes
-from pictures import Run
-from report_cases import BEGINNINGS
-from report_runs import BIN, OUT, is_coupled, merged, progress, run_scene
+from bplbm.project import CASES
+from bplbm.project import BIN
+from bplbm.report.cases import BEGINNINGS
+from bplbm.report.runs import OUT, is_coupled, merged, progress, run_scene
+from bplbm.results import Run
+from bplbm.scenes import find, scenes
 
 ROUNDS = 2  # of each scene as it is and with everything on, in turn; the faster counts
 FLUID = ("placing", "sweep", "loads", "exchange", "waiting", "output")
@@ -17,7 +18,7 @@ SOLID = {"contacts": "Pair", "neighbours": "Neigh", "ranks": "Comm", "output": "
 
 def everything_on(scene):
     """Overlay of what a scene leaves out and could have, so weak that it changes nothing that could be seen."""
-    tables = tomllib.loads((CASES / scene / "scene.toml").read_text())
+    tables = find(scene).tables()
     numerics, fluid, coupling = (tables.get(name, {}) for name in ("numerics", "fluid", "coupling"))
     overlay = {}
     if not numerics.get("smagorinsky"):

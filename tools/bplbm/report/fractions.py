@@ -3,7 +3,8 @@
 import json
 import subprocess
 
-from report_runs import BIN, OUT, progress
+from bplbm.project import BIN
+from bplbm.report.runs import OUT, progress
 
 
 def fractions(again):

@@ -18,18 +18,20 @@ import textwrap
 import time
 
 import matplotlib.pyplot as plt
-import numpy as np
-from launch import ROOT
 from matplotlib.ticker import LogFormatterSciNotation
-from pictures import Run
-from report_arrays import arrays, draw_arrays, text_of_arrays, write_arrays
-from report_cases import CASES_OF, FORMER, GROUPS, OURS, PAPERS, SCHEMES, STAIRS
-from report_details import details
-from report_fractions import fractions, text_of_fractions
-from report_needs import needs, text_of_needs
-from report_runs import OUT, module_of, progress, run_scene, toml, verdict
-from report_seconds import doubt, text_of_seconds
-from report_stability import draw_stability, stability, text_of_stability
+import numpy as np
+
+from bplbm import pictures  # noqa: F401  (its style)
+from bplbm.project import ROOT
+from bplbm.report.arrays import arrays, draw_arrays, text_of_arrays, write_arrays
+from bplbm.report.cases import CASES_OF, FORMER, GROUPS, OURS, PAPERS, SCHEMES, STAIRS
+from bplbm.report.details import details
+from bplbm.report.fractions import fractions, text_of_fractions
+from bplbm.report.needs import needs, text_of_needs
+from bplbm.report.runs import OUT, module_of, progress, run_scene, toml, verdict
+from bplbm.report.seconds import doubt, text_of_seconds
+from bplbm.report.stability import draw_stability, stability, text_of_stability
+from bplbm.results import Run
 
 PASTED = ("fluid", "numerics", "coupling")  # tables of an overlay that a recommendation shows
 COLUMNS = ("Error: mean over places of the body within a cell, spread: its range over them. Load σ: root mean square of what the "
@@ -44,35 +46,36 @@ SCATTER = 1.2  # of the time of the same run on a shared machine
 
 def measure(case, full, again):
     """One row a configuration, from one run or several places of the body."""
-    scene, make_rows, value_of, reference, uncertainty, source = CASES_OF[case]
-    module, rows, built = module_of(scene), [], machine()
-    for label, family, size, places, files in make_rows(full):
+    asked = CASES_OF[case]
+    module, rows, built = module_of(asked.scene), [], machine()
+    for choice in asked.rows(full):
+        label, size = choice.scheme, choice.size
         values, cpu, wall, steps, status, summary = [], [], [], 0, "ok", None
-        for i, overlay in enumerate(places):
+        for i, overlay in enumerate(choice.places):
             folder = OUT / case / re.sub(r"[^\w.]+", "_", f"{label}-{size}-{i}")
-            code, error = run_scene(folder, scene, overlay, files, again)
+            code, error = run_scene(folder, asked.scene, overlay, choice.files, again)
             if code:
                 status = verdict(code, error)
                 break
             run = Run(folder)
             summary = run.summary
-            values.append(value_of(run, module))
+            values.append(asked.value(run, module))
             cpu.append(summary["cpu_seconds"])
             wall.append(summary["wall_seconds"] * (1 - summary["time_share"].get("waiting", 0.0)))
             steps = summary["steps"]
-        errors = 100 * (np.array(values) / reference - 1)
+        errors = 100 * (np.array(values) / asked.reference - 1)
         if status == "ok" and not np.all(np.abs(errors) < 1e3):
             status = "blown up"
-        row = {"case": case, "scheme": label, "family": family or "", "choice": size, "status": status,
+        row = {"case": case, "scheme": label, "family": choice.family or "", "choice": size, "status": status,
                "error_percent": float(errors.mean()) if status == "ok" else None,
                "spread_percent": float(np.ptp(errors)) if status == "ok" else None,
-               "reference": reference, "reference_uncertainty_percent": 100 * uncertainty, "source": source,
+               "reference": asked.reference, "reference_uncertainty_percent": 100 * asked.uncertainty, "source": asked.source,
                "cpu_seconds": float(np.mean(cpu)) if cpu else None, "seconds": float(np.mean(wall)) if wall else None,
-               "steps": steps, "overlay": toml({k: v for k, v in places[0].items() if k in PASTED}), "built": built}
+               "steps": steps, "overlay": toml({k: v for k, v in choice.places[0].items() if k in PASTED}), "built": built}
         if summary:
             row.update({key: summary[key] for key in ("mlups", "ma_max", "re_h", "mass_drift", "substeps", "time_share")},
                        tau=summary["parameters"]["tau"], megabytes=sum(summary["megabytes"].values()),
-                       **details(case, run, places[0], again))
+                       **details(case, run, choice.places[0], again))
         rows.append(row)
         text = f"{row['error_percent']:+.2f} % (spread {row['spread_percent']:.2f}), {row['seconds']:.3g} s" \
             if status == "ok" else status
@@ -157,7 +160,7 @@ def draw(case, rows):
     draw_unstable(axes, [r for r in rows if r["status"] != "ok"], colors)
     axes.set_xlabel("seconds of the fluid to the solution, one core")
     axes.set_ylabel("|error| [%]")
-    axes.set_title(CASES_OF[case][5], fontsize=9)
+    axes.set_title(CASES_OF[case].source, fontsize=9)
     axes.legend(fontsize=6.5, bbox_to_anchor=(1.0, 1.0), loc="upper left")
     figure.savefig(OUT / f"{case}.png", bbox_inches="tight")
     plt.close(figure)
@@ -186,7 +189,7 @@ def text_of_recommended(rows):
 
 
 def text_of(case, rows):
-    lines = [f"## {case}: {CASES_OF[case][5]}", "", f"![{case}]({case}.png)", ""]
+    lines = [f"## {case}: {CASES_OF[case].source}", "", f"![{case}]({case}.png)", ""]
     lines += text_of_seconds(rows)
     for family, name in ((FORMER, "the former default"), (PAPERS, "the papers' scheme"), (STAIRS, "the staircase")):
         cost, error = advantage(rows, family)
@@ -255,7 +258,7 @@ def main():
     p.add_argument("--again", action="store_true", help="run also what has been run before")
     args = p.parse_args()
     if args.list:
-        print("\n".join([*(f"{name:16} {case[5]}" for name, case in CASES_OF.items()),
+        print("\n".join([*(f"{name:16} {case.source}" for name, case in CASES_OF.items()),
                          *(f"{name:16} {' and '.join(cases)}" for name, cases in GROUPS.items()),
                          "arrays           error of the drag by solid fraction and cells a diameter",
                          "fractions        solid fraction of a cell: error and cost of some rules",

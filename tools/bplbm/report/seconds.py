@@ -2,7 +2,7 @@
 
 import math
 
-from report_cases import AT_REST, FREE
+from bplbm.report.cases import AT_REST, FREE
 
 WANTED = 1.0  # %
 

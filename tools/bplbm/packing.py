@@ -10,7 +10,6 @@ none overlaps by more than the bound. Written are
 """
 
 import argparse
-import os
 import pathlib
 import subprocess
 import sys
@@ -18,7 +17,9 @@ import tempfile
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from bplbm.mpi_job import environment
+from bplbm.project import BIN
+
 DENSITY, STEP_PART = 1000.0, 0.1
 ROUNDS, STEPS = 60, 2000
 JAMMED = 0.86  # area fraction beyond which no packing of discs relaxes
@@ -144,15 +145,11 @@ def separations(places, sizes, args):
 
 def relax(args, places, sizes):
     """Runs LIGGGHTS until the overlaps are within the bound. Returns places and what is left."""
-    liggghts = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin" / "liggghts"
-    env = dict(os.environ)
-    if os.geteuid() == 0:
-        env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(ROUNDS // 10):
             text = script(args, places, sizes) + f"run {10 * STEPS}\n"
             pathlib.Path(folder, "in.packing").write_text(text)
-            job = subprocess.run([liggghts, "-in", "in.packing", "-screen", "none"], cwd=folder, env=env,
+            job = subprocess.run([BIN / "liggghts", "-in", "in.packing", "-screen", "none"], cwd=folder, env=environment(1),
                                  check=False, capture_output=True, text=True)
             if job.returncode:
                 fail(f"LIGGGHTS stopped:\n{job.stdout}{job.stderr}")

@@ -4,9 +4,10 @@ import re
 import tomllib
 
 import numpy as np
-from launch import CASES
-from pictures import read_table
-from report_stability import step_values
+
+from bplbm.project import CASES
+from bplbm.report.stability import step_values
+from bplbm.results import read_table
 
 LOADS = {"couette": "torque", "spin": "tz", "settling": "fy"}  # what is measured; fx in all other cases
 FEW = 8  # records, too few to judge noise by

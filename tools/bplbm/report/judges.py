@@ -3,9 +3,10 @@
 import re
 
 import numpy as np
-from pictures import read_table
-from report_cases import CASES_OF
-from report_runs import module_of
+
+from bplbm.report.cases import CASES_OF
+from bplbm.report.runs import module_of
+from bplbm.results import read_table
 
 
 def percent(part):
@@ -60,8 +61,8 @@ def overshoot(runs):
 
 def drags(runs):
     """Errors of the array's drag [%]."""
-    scene, _, measure, exact, *_ = CASES_OF["array"]
-    return [100 * (measure(run, module_of(scene)) / exact - 1) for run in runs]
+    case = CASES_OF["array"]
+    return [100 * (case.value(run, module_of(case.scene)) / case.reference - 1) for run in runs]
 
 
 def flat(runs):

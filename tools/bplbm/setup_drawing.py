@@ -2,22 +2,22 @@
 
     tools/draw_setup soil_erosion disc_migration
 
-writes cases/SCENE/pictures/setup.png.
+writes pictures/setup.png into the folder of the scene.
 """
 
 import argparse
 import pathlib
 import re
 import sys
-import tomllib
 
+from matplotlib.collections import PatchCollection
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import PatchCollection
-from launch import scenes
-from pictures import read_table
 
-CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
+from bplbm import pictures  # noqa: F401  (its style)
+from bplbm.results import read_table
+from bplbm.scenes import Unknown, find, scenes
+
 COLOR = {"pressure": "tab:blue", "velocity": "tab:green", "moving_wall": "tab:orange", "outflow": "tab:purple"}
 ATOM = re.compile(r"create_atoms\s+\d+\s+single\s+(\S+)\s+(\S+)")
 DIAMETER = re.compile(r"set\s+atom\s+(\d+)\s+diameter\s+(\S+)")
@@ -95,17 +95,15 @@ def drive_text(scene):
     return "\n".join(parts)
 
 
-def read_scene(folder):
-    """The scene as it is written; lbm check says more about what is wrong with one."""
-    scene = tomllib.loads((folder / "scene.toml").read_text())
-    if len(scene["box"]["size"]) == 3:
-        raise ValueError("a box in three dimensions is not drawn; after a run, draw_slice of pictures cuts it")
-    return scene
+def checked(tables):
+    """Tables of a scene that can be drawn; lbm check says more about what is wrong with one."""
+    if len(tables["box"]["size"]) == 3:
+        raise ValueError("a box in three dimensions is not drawn; after a run, bplbm.draw_slice cuts it")
+    return tables
 
 
-def draw(name):
-    folder = CASES / name
-    scene = read_scene(folder)
+def figure_of(scene, folder):
+    """A figure of a scene's tables; files that they name lie in the folder."""
     unit = 1e-3 if max(scene["box"]["size"]) < 0.5 else 1.0
     label = "mm" if unit == 1e-3 else "m"
     box = np.array(scene["box"]["size"]) / unit
@@ -132,14 +130,22 @@ def draw(name):
     axes.set_xlabel(f"x [{label}]", labelpad=16 if any(b["side"] == "bottom" for b in scene.get("boundary", [])) else 4)
     axes.set_ylabel(f"y [{label}]", labelpad=16 if any(b["side"] == "left" for b in scene.get("boundary", [])) else 4)
     figure.text(0.5, 1.0, drive_text(scene), ha="center", va="bottom", fontsize=8, transform=figure.transFigure)
-    (folder / "pictures").mkdir(exist_ok=True)
-    figure.savefig(folder / "pictures" / "setup.png", bbox_inches="tight")
+    return figure
+
+
+def draw(scene):
+    """Writes the picture of a Scene into its folder. Returns its path."""
+    figure = figure_of(checked(scene.tables()), scene.folder)
+    path = scene.folder / "pictures" / "setup.png"
+    path.parent.mkdir(exist_ok=True)
+    figure.savefig(path, bbox_inches="tight")
     plt.close(figure)
+    return path
 
 
 def main():
     p = argparse.ArgumentParser(prog="tools/draw_setup", description=__doc__.splitlines()[0])
-    p.add_argument("scenes", nargs="*", metavar="SCENE", help="folders of cases/")
+    p.add_argument("scenes", nargs="*", metavar="SCENE", help="names of cases/, or paths of scenes")
     p.add_argument("--list", action="store_true", help="the scenes, and nothing else")
     args = p.parse_args()
     if args.list:
@@ -148,16 +154,18 @@ def main():
     if not args.scenes:
         p.error("which scene? --list shows them")
     for name in args.scenes:
-        if not (CASES / name / "scene.toml").exists():
-            print(f"draw_setup | error | no scene '{name}'; tools/run --list shows them", file=sys.stderr)
+        try:
+            scene = find(name)
+        except Unknown as unknown:
+            print(f"draw_setup | error | {unknown}", file=sys.stderr)
             return 2
         try:
-            draw(name)
+            picture = draw(scene)
         except (OSError, KeyError, TypeError, ValueError) as e:
             why = f"lacks {e}; build/release/bin/lbm check says what a scene needs" if isinstance(e, KeyError) else e
-            print(f"draw_setup | error | {CASES / name / 'scene.toml'}: {why}", file=sys.stderr)
+            print(f"draw_setup | error | {scene.file}: {why}", file=sys.stderr)
             return 2
-        print(f"draw_setup | {CASES / name / 'pictures' / 'setup.png'}")
+        print(f"draw_setup | {picture}")
     return 0
 
 

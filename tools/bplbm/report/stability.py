@@ -6,9 +6,11 @@ import subprocess
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run
-from report_hard import STEPS, hard_cases
-from report_runs import BIN, OUT, is_coupled, merged, progress, run_scene, verdict
+
+from bplbm.project import BIN
+from bplbm.report.hard import STEPS, hard_cases
+from bplbm.report.runs import OUT, is_coupled, merged, progress, run_scene, verdict
+from bplbm.results import Run
 
 OPERATORS = ("bgk", "trt", "central_moment", "recursive_regularised")
 AUTO, RULE = "auto", "by rule"

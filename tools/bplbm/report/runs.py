@@ -2,15 +2,14 @@
 
 import importlib.util
 import json
-import os
 import re
 import subprocess
 
-from launch import CASES, ROOT, environment
-from output_folder import mark
+from bplbm.mpi_job import environment
+from bplbm.output_folder import mark
+from bplbm.project import BIN, CASES, ROOT
 
 OUT = ROOT / "out" / "report"
-BIN = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
 ONE_MACHINE = {"OMPI_MCA_pml": "ob1"}  # no search for networks: 0.2 s less of each start
 
 

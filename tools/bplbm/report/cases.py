@@ -2,46 +2,82 @@
 
 import math
 import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
-from pictures import read_table
-from report_runs import merged
+
+from bplbm.report.runs import merged
+from bplbm.results import read_table
 
 OURS, FORMER, PAPERS, STAIRS = "ours", "former", "papers", "staircase"
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """A choice of numerics that is compared."""
+
+    family: str | None  # OURS …, or none: compared with nobody
+    numerics: dict
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A row to measure: one run for each place of the body within a cell."""
+
+    scheme: str
+    family: str | None
+    size: str
+    places: list  # overlays
+    files: tuple = ()
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is measured, and against what."""
+
+    scene: str
+    rows: Callable  # of whether the report is full -> choices
+    value: Callable  # of a run and the scene's plot.py -> number
+    reference: float
+    uncertainty: float  # of the reference, relative
+    source: str
+
+
 AT_REST = ("default, bodies at rest: TRT, resistance", "TRT, Holdych (former default)")
 FREE = ("default, free bodies: TRT, layered resistance", "TRT, layered Holdych (former default)")
 SCHEMES = {
-    AT_REST[0]: (OURS, {}),
-    FREE[0]: (OURS, {"solid_term": "layered_resistance"}),
-    AT_REST[1]: (FORMER, {"solid_term": "holdych"}),
-    FREE[1]: (FORMER, {"solid_term": "layered_holdych"}),
-    "TRT by rule, Λ = 3/16": (None, {"magic": 3 / 16}),
-    "TRT by rule, Λ = 1/4": (None, {"magic": 0.25}),
+    AT_REST[0]: Scheme(OURS, {}),
+    FREE[0]: Scheme(OURS, {"solid_term": "layered_resistance"}),
+    AT_REST[1]: Scheme(FORMER, {"solid_term": "holdych"}),
+    FREE[1]: Scheme(FORMER, {"solid_term": "layered_holdych"}),
+    "TRT by rule, Λ = 3/16": Scheme(None, {"magic": 3 / 16}),
+    "TRT by rule, Λ = 1/4": Scheme(None, {"magic": 0.25}),
     "central moments, layered Noble–Torczynski":
-        (None, {"collision": "central_moment", "solid_term": "layered_noble_torczynski"}),
-    "TRT, Noble–Torczynski": (None, {"collision": "trt", "solid_term": "noble_torczynski"}),
-    "papers: BGK, Noble–Torczynski": (PAPERS, {"collision": "bgk", "solid_term": "noble_torczynski"}),
-    "BGK, Noble–Torczynski, B = ε": (None, {"collision": "bgk", "solid_term": "noble_torczynski", "weight": "fraction"}),
-    "staircase: BGK, bounce-back": (STAIRS, {"collision": "bgk", "scheme": "bounce_back"}),
-    "TRT, bounce-back": (STAIRS, {"collision": "trt", "scheme": "bounce_back"}),
-    "TRT, interpolated bounce-back": (None, {"collision": "trt", "scheme": "interpolated_bounce_back"}),
-    "TRT, implicit immersed boundary": (None, {"collision": "trt", "scheme": "implicit_immersed_boundary"}),
+        Scheme(None, {"collision": "central_moment", "solid_term": "layered_noble_torczynski"}),
+    "TRT, Noble–Torczynski": Scheme(None, {"collision": "trt", "solid_term": "noble_torczynski"}),
+    "papers: BGK, Noble–Torczynski": Scheme(PAPERS, {"collision": "bgk", "solid_term": "noble_torczynski"}),
+    "BGK, Noble–Torczynski, B = ε": Scheme(None, {"collision": "bgk", "solid_term": "noble_torczynski", "weight": "fraction"}),
+    "staircase: BGK, bounce-back": Scheme(STAIRS, {"collision": "bgk", "scheme": "bounce_back"}),
+    "TRT, bounce-back": Scheme(STAIRS, {"collision": "trt", "scheme": "bounce_back"}),
+    "TRT, interpolated bounce-back": Scheme(None, {"collision": "trt", "scheme": "interpolated_bounce_back"}),
+    "TRT, implicit immersed boundary": Scheme(None, {"collision": "trt", "scheme": "implicit_immersed_boundary"}),
 }
 SPHERE_SCHEMES = {  # in three dimensions, where the balanced weight is that of Holdych's
-    AT_REST[0]: (OURS, {}),
-    FREE[0]: (OURS, {"solid_term": "layered_resistance"}),
-    AT_REST[1]: (FORMER, {"solid_term": "holdych"}),
-    FREE[1]: (FORMER, {"solid_term": "layered_holdych"}),
-    "default, D3Q27": (OURS, {"lattice": "D3Q27"}),
-    "default, single precision": (OURS, {"precision": "single"}),
-    "default, D3Q27, single precision": (OURS, {"lattice": "D3Q27", "precision": "single"}),
+    AT_REST[0]: Scheme(OURS, {}),
+    FREE[0]: Scheme(OURS, {"solid_term": "layered_resistance"}),
+    AT_REST[1]: Scheme(FORMER, {"solid_term": "holdych"}),
+    FREE[1]: Scheme(FORMER, {"solid_term": "layered_holdych"}),
+    "default, D3Q27": Scheme(OURS, {"lattice": "D3Q27"}),
+    "default, single precision": Scheme(OURS, {"precision": "single"}),
+    "default, D3Q27, single precision": Scheme(OURS, {"lattice": "D3Q27", "precision": "single"}),
     "central moments, layered Noble–Torczynski":
-        (None, {"collision": "central_moment", "solid_term": "layered_noble_torczynski"}),
+        Scheme(None, {"collision": "central_moment", "solid_term": "layered_noble_torczynski"}),
     "papers: BGK, Noble–Torczynski":
-        (PAPERS, {"collision": "bgk", "solid_term": "noble_torczynski", "weight": "viscous"}),
-    "staircase: BGK, bounce-back": (STAIRS, {"collision": "bgk", "scheme": "bounce_back"}),
-    "TRT, bounce-back": (STAIRS, {"collision": "trt", "scheme": "bounce_back"}),
-    "TRT, interpolated bounce-back": (None, {"collision": "trt", "scheme": "interpolated_bounce_back"}),
+        Scheme(PAPERS, {"collision": "bgk", "solid_term": "noble_torczynski", "weight": "viscous"}),
+    "staircase: BGK, bounce-back": Scheme(STAIRS, {"collision": "bgk", "scheme": "bounce_back"}),
+    "TRT, bounce-back": Scheme(STAIRS, {"collision": "trt", "scheme": "bounce_back"}),
+    "TRT, interpolated bounce-back": Scheme(None, {"collision": "trt", "scheme": "interpolated_bounce_back"}),
 }
 SLOW = ("interpolated", "implicit")  # minutes a row
 
@@ -49,10 +85,10 @@ SLOW = ("interpolated", "implicit")  # minutes a row
 def compared(schemes, without=()):
     """Only the default, the one before, the papers' scheme and the staircase."""
     return {label: choice for label, choice in schemes.items()
-            if choice[0] and label not in without and not label.startswith(("default, D3", "default, single", "TRT, bounce"))}
+            if choice.family and label not in without and not label.startswith(("default, D3", "default, single", "TRT, bounce"))}
 
 
-# ---- cases: name -> rows (label, family, overlays of places, files), and how to measure ----------------------------
+# ---- rows of the cases, and how to measure -------------------------------------------------------------------------
 
 
 PLACES = ((0, 0), (0.5, 0.5), (0.23, 0.41))  # of a body's centre within a cell
@@ -74,7 +110,8 @@ def array_run(tau, h, centres=((5e-4, 5e-4),), diameter=5.046265044e-4, numerics
 
 def array_rows(full):
     sides = [1e-4, 5e-5, 2.5e-5] + ([1.25e-5] if full else [])
-    for label, (family, numerics) in SCHEMES.items():
+    for label, scheme in SCHEMES.items():
+        family, numerics = scheme.family, scheme.numerics
         if "Λ" in label and not full:
             continue
         slow = any(word in label for word in SLOW)
@@ -85,12 +122,13 @@ def array_rows(full):
                 if h < 2e-5 and tau < (1.0 if slow else 0.6) or slow and h < 5e-5 and tau < (0.6 if full else 1.0):
                     continue
                 places = [array_run(tau, h, [(0.0005 + x * h, 0.0005 + y * h)], numerics=numerics) for x, y in PLACES]
-                yield label, family, f"D/h {5.046e-4 / h:.0f}, τ {tau}", places, ()
+                yield Choice(label, family, f"D/h {5.046e-4 / h:.0f}, τ {tau}", places)
 
 
 def sphere_rows(full):
     """Any of 12, 16, 24, 32 (48) cells a side; the long step is the rule's, the short one a sixth of it."""
-    for label, (family, numerics) in SPHERE_SCHEMES.items():
+    for label, scheme in SPHERE_SCHEMES.items():
+        family, numerics = scheme.family, scheme.numerics
         if "D3Q27, single" in label and not full:
             continue
         for n in (12, 16, 24, 32) + ((48,) if full else ()):
@@ -102,7 +140,7 @@ def sphere_rows(full):
                            "numerics": {**numerics, "cell": h, "time_step": step_of(tau, h)},
                            "run": {"end_time": 1.0}, "output": {"fields_every": 1.0, "probe_every": 0.1}}
                           for x, y, z in SPHERE_PLACES]
-                yield label, family, f"D/h {0.62035 * n:.0f}, τ {tau}", places, ()
+                yield Choice(label, family, f"D/h {0.62035 * n:.0f}, τ {tau}", places)
 
 
 def sphere_at(n, place, diameter, size=1e-3, **spin):
@@ -112,7 +150,8 @@ def sphere_at(n, place, diameter, size=1e-3, **spin):
 
 def dense_rows(full, dimension, diameter, cells, end):
     """Bodies [m] in a box of 1 mm, some numbers of cells, at rest; all schemes take the same time to the end."""
-    for label, (family, numerics) in compared(SCHEMES if dimension == 2 else SPHERE_SCHEMES).items():
+    for label, scheme in compared(SCHEMES if dimension == 2 else SPHERE_SCHEMES).items():
+        family, numerics = scheme.family, scheme.numerics
         for n in cells + ((3 * cells[-1] // 2,) if full else ()):
             for tau in (0.6, 1.5):
                 if tau < 1.0 and n not in (cells if full else cells[1:2]):
@@ -124,12 +163,13 @@ def dense_rows(full, dimension, diameter, cells, end):
                            "run": {"end_time": (steps - 0.5) * step, "steady_below": 0.0},  # halves: so that rounding plays no part
                            "output": {"fields_every": (steps - 2.5) * step, "probe_every": end / 40}}
                           for place in (PLACES if dimension == 2 else SPHERE_PLACES)]
-                yield label, family, f"D/h {1e3 * diameter * n:.1f}, τ {tau}", places, ()
+                yield Choice(label, family, f"D/h {1e3 * diameter * n:.1f}, τ {tau}", places)
 
 
 def spin_rows(full):
     """A sphere of 1/3 mm that spins in a periodic box of six radii."""
-    for label, (family, numerics) in compared(SPHERE_SCHEMES, without=AT_REST).items():
+    for label, scheme in compared(SPHERE_SCHEMES, without=AT_REST).items():
+        family, numerics = scheme.family, scheme.numerics
         for n in (18, 24, 30) + ((48,) if full else ()):
             for tau in (0.6, 1.5):
                 if tau < 1.0 and n > (24 if full else 18):
@@ -139,21 +179,23 @@ def spin_rows(full):
                            "numerics": {**numerics, "cell": 1e-3 / n, "time_step": step_of(tau, 1e-3 / n)},
                            "run": {"end_time": 0.3}, "output": {"fields_every": 0.3, "probe_every": 0.3 / 40}}
                           for place in SPHERE_PLACES]
-                yield label, family, f"D/h {n / 3:.0f}, τ {tau}", places, ()
+                yield Choice(label, family, f"D/h {n / 3:.0f}, τ {tau}", places)
 
 
 def cylinder_rows(full):
-    for label, (family, numerics) in SCHEMES.items():
+    for label, scheme in SCHEMES.items():
+        family, numerics = scheme.family, scheme.numerics
         if label in FREE or "implicit" in label or ("Λ" in label and not full):
             continue
         for h in (0.01, 0.005) if full or family else (0.01,):
-            yield label, family, f"D/h {0.1 / h:.0f}", [{"numerics": {**numerics, "cell": h}}], ()
+            yield Choice(label, family, f"D/h {0.1 / h:.0f}", [{"numerics": {**numerics, "cell": h}}])
 
 
 def couette_rows(full):
     """The longest step of the rule (τ = 1.5) and shorter ones, which bounce-back pays for the most. The cylinder turns
     so slowly that the long step is within 0.1 C, too."""
-    for label, (family, numerics) in SCHEMES.items():
+    for label, scheme in SCHEMES.items():
+        family, numerics = scheme.family, scheme.numerics
         if label in AT_REST or "implicit" in label or (label.startswith("BGK") and not family) or "Λ" in label:
             continue
         for gap in (6, 8, 12) + ((16, 32) if full else ()):
@@ -167,12 +209,13 @@ def couette_rows(full):
                            "obstacle": [{"centre": c, "diameter": 0.0064, "hollow": True},
                                         {"centre": c, "diameter": 0.0032, "spin": TURN}],
                            "numerics": {**numerics, "cell": h, "time_step": step_of(tau, h)}} for c in centres]
-                yield label, family, f"gap/h {gap}, τ {tau}", places, ()
+                yield Choice(label, family, f"gap/h {gap}, τ {tau}", places)
 
 
 def settling_rows(full):
     fall = {"run": {"end_time": 0.6}, "output": {"fields_every": 0.6, "probe_every": 0.002}}
-    for label, (family, numerics) in SCHEMES.items():
+    for label, scheme in SCHEMES.items():
+        family, numerics = scheme.family, scheme.numerics
         if label in AT_REST or "implicit" in label or "B = ε" in label or ("Λ" in label and not full):
             continue
         for cells in (5, 10, 20) + ((40,) if full and "Λ" not in label else ()):
@@ -181,13 +224,13 @@ def settling_rows(full):
                                                  "cells_per_diameter": cells}, "coupling": coupling})
             if coupling:  # soft enough for one solid step a fluid step; it falls, and touches nothing until then
                 overlay = merged(overlay, {"particles": {"contact_stiffness": 100.0}})
-            yield label, family, f"D/h {cells}", [overlay], ()
+            yield Choice(label, family, f"D/h {cells}", [overlay])
     for text, change in (("step × 2", {"fluid": {"velocity_scale": 0.03}}), ("step / 4", {"fluid": {"velocity_scale": 0.24}}),
                          ("overlapped", {"coupling": {"schedule": "overlapped"}}),
                          ("3 fluid steps an interval", {"coupling": {"fluid_steps": 3}}),
                          ("no inertia of the fluid inside", {"coupling": {"inner_inertia": False}}),
                          ("5 substeps", {"coupling": {"substeps": 5}}), ("50 substeps", {"coupling": {"substeps": 50}})):
-        yield FREE[0], OURS, f"D/h 10, {text}", [merged(fall, {"numerics": {"cells_per_diameter": 10}}, change)], ()
+        yield Choice(FREE[0], OURS, f"D/h 10, {text}", [merged(fall, {"numerics": {"cells_per_diameter": 10}}, change)])
 
 
 COUETTE = 4 * np.pi * 1e-3 * TURN * 0.0016**2 * 0.0032**2 / (0.0032**2 - 0.0016**2)
@@ -223,31 +266,31 @@ def dense_drag(run, module):
     return force / (p["depth"] if u.ndim == 2 else 1.0) / (p["density"] * p["kinematic_viscosity"] * flux)
 
 
-def dense_spheres(fraction, drag, cells, end):
-    """Rows, measure and reference of a cubic array with the drag F/(6 pi mu a U) = `drag`."""
+def dense_spheres(fraction, drag, cells, end, uncertainty, source):
+    """A cubic array with the drag F/(6 pi mu a U) = `drag`."""
     diameter = 2e-3 * (0.75 * fraction / np.pi)**(1 / 3)
-    return ("sphere_array", lambda full: dense_rows(full, 3, diameter, cells, end), dense_drag,
-            3 * np.pi * diameter * drag)
+    return Case("sphere_array", lambda full: dense_rows(full, 3, diameter, cells, end), dense_drag,
+                3 * np.pi * diameter * drag, uncertainty, source)
 
 
-CASES_OF = {  # scene, rows, measure, reference, its uncertainty, source
-    "array": ("cylinder_array", array_rows, lambda run, m: m.drag(run), 51.526949, 3e-4,
-              "drag of a square array, Stokes flow; spectral, Sangani and Acrivos 1982"),
-    "spheres": ("sphere_array", sphere_rows, lambda run, m: m.drag(run), 4.292, 2e-4,
-                "drag of a cubic array of spheres, Stokes flow; Zick and Homsy 1982"),
-    "dense_discs": ("cylinder_array", lambda full: dense_rows(full, 2, 7.136496e-4, (7, 10, 14, 20, 28, 40), 2.0), dense_drag,
-                    217.894315, 3e-4, "drag of a square array of solid fraction 0.4, Stokes flow; spectral"),
-    "dense_spheres": (*dense_spheres(0.343, 15.4, (7, 9, 12, 18, 24), 1.0), 4e-3,
-                      "drag of a cubic array of solid fraction 0.343, Stokes flow; Zick and Homsy 1982"),
-    "touching_spheres": (*dense_spheres(np.pi / 6, 42.1, (6, 8, 12, 16, 24), 1.0), 2e-3,
-                         "drag of a cubic array of spheres that touch, Stokes flow; Zick and Homsy 1982"),
-    "cylinder": ("cylinder_flow", cylinder_rows, lambda run, m: m.coefficients(run)[1][-1], 5.57953523384, 1e-6,
-                 "drag of a cylinder at Re 20; Schäfer and Turek 2D-1"),
-    "couette": ("taylor_couette", couette_rows, couette_torque, COUETTE, 1e-9, "torque between cylinders; exact"),
-    "spin": ("sphere_array", spin_rows, spin_torque, STOKES, 1e-3,
-             "torque on a sphere that spins in a periodic box of six radii; Zuzovsky et al. 1983"),
-    "settling": ("settling_disc", settling_rows, lambda run, m: m.reynolds(run)[1].max(), 17.345, 4.3e-3,
-                 "largest Re of a settling disc; 17.27 … 17.42 in the literature"),
+CASES_OF = {
+    "array": Case("cylinder_array", array_rows, lambda run, m: m.drag(run), 51.526949, 3e-4,
+                  "drag of a square array, Stokes flow; spectral, Sangani and Acrivos 1982"),
+    "spheres": Case("sphere_array", sphere_rows, lambda run, m: m.drag(run), 4.292, 2e-4,
+                    "drag of a cubic array of spheres, Stokes flow; Zick and Homsy 1982"),
+    "dense_discs": Case("cylinder_array", lambda full: dense_rows(full, 2, 7.136496e-4, (7, 10, 14, 20, 28, 40), 2.0), dense_drag,
+                        217.894315, 3e-4, "drag of a square array of solid fraction 0.4, Stokes flow; spectral"),
+    "dense_spheres": dense_spheres(0.343, 15.4, (7, 9, 12, 18, 24), 1.0, 4e-3,
+                                   "drag of a cubic array of solid fraction 0.343, Stokes flow; Zick and Homsy 1982"),
+    "touching_spheres": dense_spheres(np.pi / 6, 42.1, (6, 8, 12, 16, 24), 1.0, 2e-3,
+                                      "drag of a cubic array of spheres that touch, Stokes flow; Zick and Homsy 1982"),
+    "cylinder": Case("cylinder_flow", cylinder_rows, lambda run, m: m.coefficients(run)[1][-1], 5.57953523384, 1e-6,
+                     "drag of a cylinder at Re 20; Schäfer and Turek 2D-1"),
+    "couette": Case("taylor_couette", couette_rows, couette_torque, COUETTE, 1e-9, "torque between cylinders; exact"),
+    "spin": Case("sphere_array", spin_rows, spin_torque, STOKES, 1e-3,
+                 "torque on a sphere that spins in a periodic box of six radii; Zuzovsky et al. 1983"),
+    "settling": Case("settling_disc", settling_rows, lambda run, m: m.reynolds(run)[1].max(), 17.345, 4.3e-3,
+                     "largest Re of a settling disc; 17.27 … 17.42 in the literature"),
 }
 
 GROUPS = {"dense": ("dense_discs", "dense_spheres", "touching_spheres"), "torque": ("couette", "spin")}  # names for several
