@@ -126,8 +126,9 @@ def own_choices(scene, words):
 
 
 def label(args):
-    """Name of the overlays beside the set: VARIANT and KEY-VALUE, joined."""
-    return "_".join(([args.variant] if args.variant else []) + [f"{key}-{value}" for key, value in args.own])
+    """Name of the overlays beside the set: VARIANT, KEY-VALUE and names of overlay files, joined."""
+    return "_".join([*([args.variant] if args.variant else []), *(f"{key}-{value}" for key, value in args.own),
+                     *(pathlib.Path(overlay).stem for overlay in args.overlay)])
 
 
 def out_folder(args):
