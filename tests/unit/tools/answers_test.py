@@ -7,6 +7,7 @@ import unittest
 TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
 ALL = sorted(p.name for p in TOOLS.iterdir() if p.is_file() and not p.suffix)
 LISTS = {"build": "release", "compare": "", "draw_setup": "settling_disc", "fuzz": "codec", "install": "cmake",
+         "new": "bonded", "sweep": "settling_disc",
          "report": "stability", "run": "settling_disc", "test": "coupled"}
 
 NEEDED = {"make_packing": "--out x --box 0 1 0 1 --diameter 0.1 0.2".split()}  # without which it says so first

@@ -28,10 +28,11 @@ from bplbm.report.cases import CASES_OF, FORMER, GROUPS, OURS, PAPERS, SCHEMES, 
 from bplbm.report.details import details
 from bplbm.report.fractions import fractions, text_of_fractions
 from bplbm.report.needs import needs, text_of_needs
-from bplbm.report.runs import OUT, module_of, progress, run_scene, toml, verdict
+from bplbm.report.runs import OUT, module_of, progress, run_scene, verdict
 from bplbm.report.seconds import doubt, text_of_seconds
 from bplbm.report.stability import draw_stability, stability, text_of_stability
 from bplbm.results import Run
+from bplbm.toml_text import toml
 
 PASTED = ("fluid", "numerics", "coupling")  # tables of an overlay that a recommendation shows
 COLUMNS = ("Error: mean over places of the body within a cell, spread: its range over them. Load σ: root mean square of what the "

@@ -8,6 +8,7 @@ import subprocess
 from bplbm.mpi_job import environment
 from bplbm.output_folder import mark
 from bplbm.project import BIN, CASES, ROOT
+from bplbm.toml_text import toml
 
 OUT = ROOT / "out" / "report"
 ONE_MACHINE = {"OMPI_MCA_pml": "ob1"}  # no search for networks: 0.2 s less of each start
@@ -23,17 +24,6 @@ def merged(*overlays):
         for name, table in overlay.items():
             out[name] = table if isinstance(table, list) else {**out.get(name, {}), **table}
     return out
-
-
-def toml(tables):
-    """Text of an overlay; a list of tables becomes [[name]]."""
-    value = lambda v: json.dumps(v) if not isinstance(v, bool) else str(v).lower()  # noqa: E731
-    text = ""
-    for name, table in tables.items():
-        for one in table if isinstance(table, list) else [table]:
-            text += (f"[[{name}]]\n" if isinstance(table, list) else f"[{name}]\n")
-            text += "".join(f"{k} = {value(v)}\n" for k, v in one.items())
-    return text
 
 
 def module_of(scene):

@@ -1,0 +1,121 @@
+"""Line charts as SVG text: small, sharp at any size, and drawn in milliseconds."""
+
+import html
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+COLORS = ("#1f6fb4", "#d1602b", "#2f8f4e", "#7a5bb0", "#b03a48", "#6b7280", "#b8860b", "#0f8b8d")
+MOST_POINTS = 500  # of a line; what a screen can show
+LEFT, RIGHT, TOP, BOTTOM = 66, 22, 12, 40
+LETTER = 6.2  # width of one, about
+
+
+@dataclass(frozen=True)
+class Line:
+    """A series of a chart."""
+
+    name: str
+    x: np.ndarray
+    y: np.ndarray
+    marked: bool = False  # a dot at each point
+    dashed: bool = False
+
+
+def ticks(low, high, wanted=5):
+    """Round numbers within a range."""
+    if not high > low:
+        return [low]
+    raw = (high - low) / wanted
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = next(power * f for f in (1, 2, 2.5, 5, 10) if power * f >= raw)
+    first = math.ceil(low / step - 1e-9)
+    return [round(i * step, 12 - math.floor(math.log10(step))) for i in range(first, math.floor(high / step + 1e-9) + 1)]
+
+
+def thinned(x, y):
+    """At most MOST_POINTS, of which none is a peak left out: the smallest and the largest of each piece stay."""
+    if len(x) <= MOST_POINTS:
+        return x, y
+    kept = set()
+    for piece in np.array_split(np.arange(len(x)), MOST_POINTS // 2):
+        finite = piece[np.isfinite(y[piece])]
+        kept |= {finite[y[finite].argmin()], finite[y[finite].argmax()]} if len(finite) else {piece[0]}
+    chosen = np.array(sorted(kept))
+    return x[chosen], y[chosen]
+
+
+def span(values):
+    """Range of all finite values, a little wider where they are all alike."""
+    finite = np.concatenate([v[np.isfinite(v)] for v in values]) if values else np.zeros(0)
+    if not len(finite):
+        return 0.0, 1.0
+    low, high = float(finite.min()), float(finite.max())
+    if high - low <= 1e-12 * max(abs(low), abs(high)):
+        half = 0.05 * abs(high) or 1.0
+        return low - half, high + half
+    return low, high
+
+
+def pieces(x, y):
+    """Runs of neighbouring finite points."""
+    good = np.isfinite(x) & np.isfinite(y)
+    edges = np.flatnonzero(np.diff(good.astype(int))) + 1
+    return [(a, b) for a, b in zip(np.split(x, edges), np.split(y, edges), strict=True) if np.isfinite(a[0]) and np.isfinite(b[0])]
+
+
+def legend_places(names, width):
+    """Places of entries in rows that hold them, and the number of rows."""
+    places, x, row = [], 0.0, 0
+    for name in names:
+        needs = 30 + LETTER * len(name)
+        if x and x + needs > width:
+            x, row = 0.0, row + 1
+        places.append((x, row))
+        x += needs
+    return places, row + 1 if any(names) else 0
+
+
+def line_chart(lines, x_label, y_label, width=470, height=250):
+    """SVG of lines on common axes."""
+    data = [(line, *thinned(np.asarray(line.x, float), np.asarray(line.y, float))) for line in lines if len(line.x)]
+    x_low, x_high = span([x for _, x, _ in data])
+    y_low, y_high = span([y for *_, y in data])
+    margin = 0.04 * (y_high - y_low)
+    y_low, y_high = y_low - margin, y_high + margin
+    right, bottom = width - RIGHT, height - BOTTOM
+    entries, rows = legend_places([line.name for line, *_ in data], right - LEFT)
+    top = TOP + 15 * rows
+
+    def place_x(x):
+        return LEFT + (x - x_low) / (x_high - x_low) * (right - LEFT)
+
+    def place_y(y):
+        return bottom - (y - y_low) / (y_high - y_low) * (bottom - top)
+
+    out = [f'<svg class="chart" viewBox="0 0 {width} {height}" role="img" aria-label="{html.escape(y_label)} against '
+           f'{html.escape(x_label)}">']
+    for tick in ticks(x_low, x_high):
+        x = place_x(tick)
+        out.append(f'<path class="grid" d="M{x:.1f} {top}V{bottom}"/><text x="{x:.1f}" y="{bottom + 14}" class="middle">{tick:g}</text>')
+    for tick in ticks(y_low, y_high):
+        y = place_y(tick)
+        out.append(f'<path class="grid" d="M{LEFT} {y:.1f}H{right}"/><text x="{LEFT - 5}" y="{y + 3.5:.1f}" class="end">{tick:g}</text>')
+    for i, (line, x, y) in enumerate(data):
+        color = COLORS[i % len(COLORS)]
+        path = "".join("M" + "L".join(f"{place_x(a):.1f} {place_y(b):.1f}" for a, b in zip(*piece, strict=True))
+                       for piece in pieces(x, y))
+        dash = ' stroke-dasharray="5 3"' if line.dashed else ""
+        out.append(f'<path d="{path}" fill="none" stroke="{color}" stroke-width="1.6"{dash}/>')
+        if line.marked:
+            out += [f'<circle cx="{place_x(a):.1f}" cy="{place_y(b):.1f}" r="3" fill="{color}"/>'
+                    for a, b in zip(x, y, strict=True) if np.isfinite(a) and np.isfinite(b)]
+        if line.name:
+            at = LEFT + entries[i][0], TOP + 15 * entries[i][1]
+            out.append(f'<path d="M{at[0]:.0f} {at[1] - 4}h14" stroke="{color}" stroke-width="2"{dash}/>'
+                       f'<text x="{at[0] + 18:.0f}" y="{at[1]}">{html.escape(line.name)}</text>')
+    out.append(f'<path class="axis" d="M{LEFT} {top}V{bottom}H{right}"/>')
+    out.append(f'<text x="{(LEFT + right) / 2:.0f}" y="{height - 8}" class="middle">{html.escape(x_label)}</text>')
+    out.append(f'<text transform="translate(12 {(top + bottom) / 2:.0f}) rotate(-90)" class="middle">{html.escape(y_label)}</text></svg>')
+    return "".join(out)
