@@ -6,11 +6,7 @@ import pathlib
 import h5py
 import numpy as np
 
-
-def read_table(path):
-    """Columns of a CSV file of ours: dict name -> array."""
-    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
-    return {name: rows[name] for name in rows.dtype.names}
+from bplbm.reading import Frames, read_table
 
 
 def studies(run):
@@ -20,9 +16,10 @@ def studies(run):
 
 
 class Run:
-    """The output folder of one run."""
+    """The output folder of one run: summary and parameters at once, all else when it is asked for."""
 
     def __init__(self, folder):
+        """Throws OSError where there is no summary.json: the run has not come to its end."""
         self.folder = pathlib.Path(folder)
         self.summary = json.loads((self.folder / "summary.json").read_text())
         self.parameters = self.summary["parameters"]
@@ -32,6 +29,45 @@ class Run:
         table = read_table(self.folder / "probes.csv")
         mine = table["id"] == particle
         return {name: column[mine] for name, column in table.items()}
+
+    def table(self, name):
+        """probes, points, obstacles or breaks (any CSV file of the folder): a pandas DataFrame where pandas is installed,
+        else a Table, name -> array; SI units, in `.attrs["units"]` or `.units`. Throws OSError where there is none."""
+        table = read_table(self.folder / f"{name}.csv")
+        try:
+            return table.to_pandas()
+        except ImportError:
+            return table
+
+    @property
+    def breaks(self):
+        """Each broken bond: step, time, ids, mode, force, place, direction; as `table`."""
+        return self.table("breaks")
+
+    @property
+    def fields(self):
+        """Frames of the fields: `run.fields[-1].pressure`, `run.fields.at(0.4).velocity`."""
+        return Frames(self.folder / "fields.h5")
+
+    @property
+    def results(self):
+        """Judged results: dicts with name, value, unit, reference, error, tolerance, pass."""
+        return self.summary["results"]
+
+    @property
+    def quantities(self):
+        """Numbers without a reference: dicts with name, value, unit."""
+        return self.summary.get("quantities", [])
+
+    @property
+    def studies(self):
+        """The comparison runs beside it: dict name -> Run."""
+        return studies(self)
+
+    def __repr__(self):
+        s = self.summary
+        passed = f", {sum(r['pass'] for r in self.results)} of {len(self.results)} results pass" if self.results else ""
+        return f"Run of {s['scene']}: {s['steps']} steps, {s['physical_seconds']:.6g} s{passed} ({self.folder})"
 
     def frames(self):
         """Times and names of the field frames."""
