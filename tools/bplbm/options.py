@@ -68,6 +68,7 @@ def parser():
     p.add_argument("--out", metavar="DIR", help="a new, an empty or an earlier run's folder; default: "
                    "out/SCENE[-SET][-VARIANT] (of the current folder for a scene outside cases/), where an earlier run is renamed to ….1, ….2 and so on")
     p.add_argument("--force", action="store_true", help="replace an earlier run in the output folder")
+    p.add_argument("--no-page", action="store_true", help="write no page (index.html in the output folder)")
     p.add_argument("--no-build", action="store_true", help="take the programs as they are built; install and build nothing")
     p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
     p.add_argument("--no-study", action="store_true", help="leave out the scene's comparison runs")
@@ -79,6 +80,7 @@ def arguments(words):
     """Checked arguments; `scene` is a Scene, `own` holds its own choices as pairs (KEY, VALUE)."""
     options = parser()
     args, rest = options.parse_known_args(words)
+    args.words = list(words)
     if not args.scene and rest:
         fail(f"no option '{rest[0]}' without a scene; see tools/run --help")
     if not args.scene:

@@ -109,15 +109,18 @@ class Frame:
                                      + ", ".join(file[self.group]))
             return file[self.group][name][...]
 
-    def _field(self, name):
+    @property
+    def coordinates(self):
+        """Centres of the cells along x, y (, z) [m]."""
         import h5py
-        values = self._read(name)
         with h5py.File(self.path) as file:
-            cell, attributes = file.attrs["cell"], dict(file.attrs)
-        cells = values.shape[:-1] if name == "velocity" else values.shape  # [nz][ny][nx]
-        axes = {axis: attributes.get(f"origin_{axis}", 0.0) + cell * (np.arange(n) + 0.5)
+            cells = file[self.group]["pressure"].shape  # [nz][ny][nx]
+            cell, origin = file.attrs["cell"], dict(file.attrs)
+        return {axis: origin.get(f"origin_{axis}", 0.0) + cell * (np.arange(n) + 0.5)
                 for axis, n in zip("xyz", reversed(cells))}  # noqa: B905  (two or three of them)
-        return Field(name, values, self.time, axes)
+
+    def _field(self, name):
+        return Field(name, self._read(name), self.time, self.coordinates)
 
     @property
     def velocity(self):

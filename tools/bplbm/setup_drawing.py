@@ -15,10 +15,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from bplbm import pictures  # noqa: F401  (its style)
-from bplbm.results import read_table
+from bplbm.reading import read_table
+from bplbm.scene_words import COLOR, drive_text, side_line, words
 from bplbm.scenes import Unknown, find, scenes
 
-COLOR = {"pressure": "tab:blue", "velocity": "tab:green", "moving_wall": "tab:orange", "outflow": "tab:purple"}
 ATOM = re.compile(r"create_atoms\s+\d+\s+single\s+(\S+)\s+(\S+)")
 DIAMETER = re.compile(r"set\s+atom\s+(\d+)\s+diameter\s+(\S+)")
 
@@ -47,21 +47,6 @@ def discs_of(scene, folder):
     return discs + script_discs(folder)
 
 
-def side_line(side, box, start, end):
-    lx, ly = box
-    return {"left": ([0, 0], [start, end]), "right": ([lx, lx], [start, end]),
-            "bottom": ([start, end], [0, 0]), "top": ([start, end], [ly, ly])}[side]
-
-
-def words(boundary):
-    kind = boundary["kind"].replace("_", " ")
-    if "pressure" in boundary:
-        return f"{kind} {boundary['pressure'] / 1e3:g} kPa" if boundary["pressure"] else f"{kind} 0"
-    if "velocity" in boundary:
-        return f"{kind} {np.hypot(*boundary['velocity']):g} m/s {boundary.get('profile', '')}".rstrip()
-    return kind
-
-
 def draw_sides(axes, scene, box, unit):
     lx, ly = box
     for key, sides in (("sides_x", ("left", "right")), ("sides_y", ("bottom", "top"))):
@@ -78,21 +63,6 @@ def draw_sides(axes, scene, box, unit):
         dx, dy, align = offsets[b["side"]]
         axes.annotate(words(b), (np.mean(x), np.mean(y)), xytext=(dx, dy), textcoords="offset points", ha=align,
                       va="center" if dx else "bottom", color=COLOR[b["kind"]], rotation=90 if dx else 0)
-
-
-def drive_text(scene):
-    fluid, box = scene["fluid"], scene["box"]
-    parts = [f"ρ = {fluid['density']:g} kg/m³, ν = {fluid['kinematic_viscosity']:g} m²/s"]
-    if any(fluid.get("gravity", [])):
-        parts.append(f"g = {np.hypot(*fluid['gravity']):g} m/s² ↓")
-    if any(fluid.get("body_force", [])):
-        parts.append(f"body force {np.hypot(*fluid['body_force']):g} m/s² →")
-    if any(box.get("pressure_jump", [])):
-        parts.append(f"pressure jump {np.max(np.abs(box['pressure_jump'])):g} Pa")
-    if "particles" in scene:
-        d = np.atleast_1d(scene["particles"]["diameter"]) * 1e3
-        parts.append(f"discs {' … '.join(f'{v:g}' for v in d)} mm, ρ_s = {np.max(scene['particles']['density']):g} kg/m³")
-    return "\n".join(parts)
 
 
 def checked(tables):

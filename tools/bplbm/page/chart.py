@@ -8,7 +8,7 @@ import numpy as np
 
 COLORS = ("#1f6fb4", "#d1602b", "#2f8f4e", "#7a5bb0", "#b03a48", "#6b7280", "#b8860b", "#0f8b8d")
 MOST_POINTS = 500  # of a line; what a screen can show
-LEFT, RIGHT, TOP, BOTTOM = 66, 22, 12, 40
+LEFT, RIGHT, TOP, BOTTOM = 74, 22, 12, 40
 LETTER = 6.2  # width of one, about
 
 

@@ -52,11 +52,6 @@ def text(value):
     return str(value)
 
 
-def unit_text(unit):
-    """[unit], or nothing for a plain number."""
-    return "" if unit in ("1", "", None) else f" [{unit}]"
-
-
 def cell(value, numeric=False):
     if isinstance(value, Cell):
         kind = f" class={value.kind}" if value.kind else ""

@@ -4,6 +4,7 @@ leaving the others out saves, and where a coupled interval goes on both sides.""
 import re
 import subprocess
 
+from bplbm.costs import SOLID, solid_seconds
 from bplbm.project import CASES
 from bplbm.project import BIN
 from bplbm.report.cases import BEGINNINGS
@@ -13,7 +14,6 @@ from bplbm.scenes import find, scenes
 
 ROUNDS = 2  # of each scene as it is and with everything on, in turn; the faster counts
 FLUID = ("placing", "sweep", "loads", "exchange", "waiting", "output")
-SOLID = {"contacts": "Pair", "neighbours": "Neigh", "ranks": "Comm", "output": "Outpt", "other": "Other"}
 
 
 def everything_on(scene):
@@ -83,14 +83,8 @@ def interval_of(run):
 
 
 def solid_parts(log, intervals):
-    """Microseconds of an interval from the last table of times in a log of LIGGGHTS, which counts the wait for the
-    fluid among its other work."""
-    last = log[log.rindex("Loop time of"):]
-    seconds = {part: float(re.search(rf"^{key} +time \(%\) = (\S+)", last, re.M).group(1)) for part, key in SOLID.items()}
-    told = re.search(r"fix lbm/couple: .* (\S+) s of waiting for the fluid, (\S+) s of it before the first step", log)
-    waiting = float(told.group(1)) - float(told.group(2))
-    seconds["other"] -= waiting
-    return {part: 1e6 * s / intervals for part, s in {**seconds, "waiting": waiting}.items()}
+    """Microseconds of an interval from a log of LIGGGHTS."""
+    return {part: 1e6 * s / intervals for part, s in solid_seconds(log).items()}
 
 
 # ---- text --------------------------------------------------------------------------------------------------------
