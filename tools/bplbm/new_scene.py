@@ -3,7 +3,7 @@
     tools/new sand --kind packed --dimensions 2
 
 A template is a folder of templates/: a line that begins with `@2 ` or `@3 ` is for that many dimensions, NAME is the
-scene's name and WHAT a disc or a sphere.
+scene's name, WHAT a disc or a sphere, SHOWS what the kind shows.
 """
 
 import argparse
@@ -55,7 +55,7 @@ def checked(path):
     return path
 
 
-def rendered(text, name, dimensions):
+def rendered(text, name, dimensions, shows=""):
     """A template's text for so many dimensions."""
     lines = []
     for line in text.splitlines():
@@ -65,7 +65,8 @@ def rendered(text, name, dimensions):
             line = line[3:]
         lines.append(line)
     what = "disc" if dimensions == 2 else "sphere"
-    return "\n".join(lines).replace("NAME", name).replace("WHAT", what).replace("TUTORIAL", str(CASES / "TUTORIAL.md")) + "\n"
+    text = "\n".join(lines).replace("NAME", name).replace("WHAT", what).replace("TUTORIAL", str(CASES / "TUTORIAL.md"))
+    return text.replace("SHOWS", shows) + "\n"
 
 
 def bed(size, diameters, height, random_numbers):
@@ -116,7 +117,7 @@ def make(path, kind_name, dimensions):
     files = {"scene.toml": f"{kind_name}/scene.toml", "in.liggghts": f"{kind_name}/in.liggghts", "README.md": "README.md",
              **({"relax.liggghts": "relax.liggghts"} if kind.bed else {})}
     for name, template in files.items():
-        (folder / name).write_text(rendered((TEMPLATES / template).read_text(), folder.resolve().name, dimensions))
+        (folder / name).write_text(rendered((TEMPLATES / template).read_text(), folder.resolve().name, dimensions, kind.shows))
     (folder / "variant-short.toml").write_text(f"# Only what changes.\n[run]\nend_time = {kind.short}  # s\n")
     copy_common(folder, kind)
     if kind.bed:

@@ -8,20 +8,6 @@ import numpy as np
 from bplbm.page.picture import HOT, MOST_MARKS, TWO_SIDED, Scale, chosen_frames, coarser, data_url, png
 
 UNITS = 1000  # of the drawing over a picture: along the longer side
-SCRIPT = """
-(()=>{const d=JSON.parse(document.getElementById('flow-data').textContent),box=document.getElementById('flow');if(!box)return;
-const img=box.querySelector('img'),svg=box.querySelector('svg'),time=document.getElementById('flow-time'),
-slide=document.getElementById('flow-slide'),play=document.getElementById('flow-play');let kind='speed',timer=0;
-function show(){const f=d.frames[slide.value];img.src=f[kind];time.textContent='t = '+f.t+' s';let s='';
-const b=f.b||[];for(let i=0;i<b.length;i+=5)s+='<path d="M'+b[i]+' '+b[i+1]+'L'+b[i+2]+' '+b[i+3]+'" stroke="'+
-['#2f8f4e','#d62728','#1f77b4'][b[i+4]]+'" stroke-width="'+(b[i+4]?4:2.5)+'"/>';
-const p=f.p||[];for(let i=0;i<p.length;i+=3)s+='<circle cx="'+p[i]+'" cy="'+p[i+1]+'" r="'+p[i+2]+'"/>';svg.innerHTML='<g fill="#f4e3c1" stroke="#222" stroke-width="1.2">'+
-s.replace(/<path[^>]*>/g,'')+'</g>'+(s.match(/<path[^>]*>/g)||[]).join('')}
-slide.oninput=show;for(const b of document.querySelectorAll('[data-kind]'))b.onclick=()=>{kind=b.dataset.kind;
-for(const c of document.querySelectorAll('[data-bar]'))c.hidden=c.dataset.bar!==kind;show()};
-play.onclick=()=>{if(timer){clearInterval(timer);timer=0;play.textContent='play'}else{play.textContent='pause';
-timer=setInterval(()=>{slide.value=(+slide.value+1)%d.frames.length;show()},Math.max(80,4000/d.frames.length))}};show()})();
-"""
 
 
 @dataclass(frozen=True)
@@ -108,9 +94,9 @@ def read_planes(run):
 
 
 def animation(run, planes):
-    """HTML of the animation of a Run, and its script; two empty texts without planes."""
+    """HTML of the animation of a Run, which flow.js moves; nothing without planes."""
     if not planes:
-        return "", ""
+        return ""
     p, size, planes = run.parameters, box_of(run), thinned(planes)
     first = run.fields[0].coordinates
     half = p["cell"] / 2
@@ -123,20 +109,26 @@ def animation(run, planes):
                         "speed": data_url(png(speed.indices(coarser(plane.speed))[::-1], speed.palette())),
                         "pressure": data_url(png(pressure.indices(coarser(plane.pressure))[::-1], pressure.palette())),
                         "p": discs, "b": bonds})
+    where = "" if len(size) == 2 else f"the plane y = {float(np.median(first['y'])):.3g} m, and the particles that it cuts · "
+    return frame_of(entries, flat, (speed, pressure), where)
+
+
+def frame_of(entries, flat, bars, where):
+    """The pictures' place in the page, with slider, buttons and colours. bars: scales of speed and pressure."""
     ratio, last = flat[0] / flat[1], len(entries) - 1
     width, height = (UNITS * side / max(flat) for side in flat)
-    where = "" if len(size) == 2 else f"the plane y = {float(np.median(first['y'])):.3g} m, and the particles that it cuts · "
+    shown = 560 * min(ratio, 1.9)  # pixels wide
     bonds = '; bonds: <span style="color:#2f8f4e">intact</span>, broken by <span style="color:#d62728">tension</span>, by ' \
             '<span style="color:#1f77b4">shear</span>' if any(e["b"] for e in entries) else ""
-    markup = (f'<figure class="field" style="width:min(100%,{max(320, 560 * min(ratio, 1.9)):.0f}px)">'
-              f'<div id="flow" style="position:relative;aspect-ratio:{ratio:.4f};width:min(100%,{560 * min(ratio, 1.9):.0f}px)"><img alt="the fluid" src="{entries[-1]["speed"]}" '
-              f'style="position:absolute;inset:0;height:100%"><svg viewBox="0 0 {width:.0f} {height:.0f}" preserveAspectRatio="none" '
-              'style="position:absolute;inset:0;width:100%;height:100%"></svg></div>'
-              f'<input id="flow-slide" type="range" min="0" max="{last}" value="{last}" aria-label="time">'
-              '<p style="margin:4px 0"><button id="flow-play">play</button> <button data-kind="speed">speed</button> '
-              '<button data-kind="pressure">pressure</button> <span id="flow-time" class="soft"></span></p>'
-              f'<div data-bar="speed">{speed.bar("speed [m/s]")}</div><div data-bar="pressure" hidden>'
-              f'{pressure.bar("pressure [Pa]")}</div><figcaption>{where}{flat[0]:.4g} m wide, {flat[1]:.4g} m high'
-              f'{bonds}; grey: no fluid</figcaption></figure>'
-              f'<script id="flow-data" type="application/json">{json.dumps({"frames": entries})}</script>')
-    return markup, SCRIPT
+    return (f'<figure class="field" style="width:min(100%,{max(320, shown):.0f}px)">'
+            f'<div id="flow" style="position:relative;aspect-ratio:{ratio:.4f};width:min(100%,{shown:.0f}px)">'
+            f'<img alt="the fluid" src="{entries[-1]["speed"]}" style="position:absolute;inset:0;height:100%">'
+            f'<svg viewBox="0 0 {width:.0f} {height:.0f}" preserveAspectRatio="none" '
+            'style="position:absolute;inset:0;width:100%;height:100%"></svg></div>'
+            f'<input id="flow-slide" type="range" min="0" max="{last}" value="{last}" aria-label="time">'
+            '<p style="margin:4px 0"><button id="flow-play">play</button> <button data-kind="speed">speed</button> '
+            '<button data-kind="pressure">pressure</button> <span id="flow-time" class="soft"></span></p>'
+            f'<div data-bar="speed">{bars[0].bar("speed [m/s]")}</div>'
+            f'<div data-bar="pressure" hidden>{bars[1].bar("pressure [Pa]")}</div>'
+            f"<figcaption>{where}{flat[0]:.4g} m wide, {flat[1]:.4g} m high{bonds}; grey: no fluid</figcaption></figure>"
+            f'<script id="flow-data" type="application/json">{json.dumps({"frames": entries})}</script>')

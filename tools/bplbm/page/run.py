@@ -137,7 +137,7 @@ def write_page(folder, scene, files, words, line):
     run, tables = Run(folder), read_laid_over(files)
     s = run.summary
     planes = flow.read_planes(run)
-    moving, script = flow.animation(run, planes)
+    moving = flow.animation(run, planes)
     title = " ".join(w for w in (scene.name, s["set"] if s["set"] != "resolved" else "", s["variant"]) if w)
     written = time.localtime((run.folder / "summary.json").stat().st_mtime)
     text = page(title, f"<h1>{html.escape(title)}</h1>",
@@ -149,7 +149,8 @@ def write_page(folder, scene, files, words, line):
                 section("Histories", f'<div class="row">{"".join(histories.charts(run, [(p.time, *p.fluid) for p in planes]))}</div>'),
                 section("Pictures of the scene", pictures(run)),
                 section("Where the time went", costs(run)), section("What was on", said(run)), section("Warnings and hints", warnings(run)),
-                section("How to repeat it", *how(run, tables, scene, words, line)), script=script)
+                section("How to repeat it", *how(run, tables, scene, words, line)),
+                scripts=["flow.js"] if moving else [])
     path = run.folder / "index.html"
     part = path.with_suffix(".part")
     part.write_text(text)
