@@ -8,6 +8,8 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 import numpy as np  # noqa: E402
+from bplbm.page.report import report_page  # noqa: E402
+from bplbm.project import CASES  # noqa: E402
 from bplbm.report import arrays, command, details, judges, needs, seconds, stability  # noqa: E402
 from bplbm.report.cases import AT_REST, FREE, OURS, PAPERS  # noqa: E402
 
@@ -93,6 +95,47 @@ class Text(unittest.TestCase):
         self.assertLessEqual(max(map(len, lines[:-2])), command.WIDTH)
         self.assertTrue(lines[-3].endswith("word  "))
         self.assertEqual(lines[-2:], ["| " + "a | " * 50, "short  "])
+
+
+class Page(unittest.TestCase):
+    TEXT = """# Title
+
+One `a|b <c>` **bold** line  
+[next](#a-table) line
+with more
+```toml
+[x]
+
+y = 1
+```
+![own](own.png)
+## A table
+| a | b |
+|---|---|
+| -1.5 | <text> |
+| 2e-3 | – |
+- one
+  goes on
+- two
+"""
+
+    def test_holds_what_the_markdown_holds(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "own.png").write_bytes(b"png")
+            text = report_page(self.TEXT, pathlib.Path(folder))
+        for part in ("<title>Title</title>", "<code>a|b &lt;c&gt;</code> <b>bold</b> line<br>", '<a href="#a-table">next</a> line with more',
+                     "<pre>[x]\n\ny = 1</pre>", 'src="data:image/png;base64,cG5n" alt="own"', '<h2 id="a-table">A table</h2>',
+                     '<table class="sort"><thead><tr><th>a</th><th>b</th></tr></thead>', "<td class=n>-1.5</td><td>&lt;text&gt;</td>",
+                     "<td class=n>2e-3</td>", "<ul><li>one goes on</li><li>two</li></ul>"):
+            self.assertIn(part, text)
+
+    def test_of_the_shipped_reports_loses_no_row(self):
+        for path in (CASES / "report").rglob("README.md"):
+            text, source = report_page(path.read_text(), path.parent), path.read_text()
+            rows = [line for line in source.splitlines() if line.startswith("|")]
+            self.assertEqual(text.count("<tr>"), len(rows) - text.count("<table"), path)
+            self.assertEqual(text.count("<img"), source.count("!["), path)
+            self.assertNotIn("```", text)
 
 
 class Advantage(unittest.TestCase):

@@ -3,7 +3,8 @@
     tools/report [--quick|--full] [CASE…]     --list names the cases
 
 One run is one row: a scene of cases/ with an overlay, judged against a reference. What has been run is kept in
-out/report and not run again (--again does). Writes report.md, rows.csv, rows.json and a picture a case there.
+out/report and not run again (--again does). Writes report.md, the same as a page (index.html), rows.csv, rows.json and a
+picture a case there.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from matplotlib.ticker import LogFormatterSciNotation
 import numpy as np
 
 from bplbm import pictures  # noqa: F401  (its style)
+from bplbm.page.report import report_page
 from bplbm.project import ROOT
 from bplbm.report.arrays import arrays, draw_arrays, text_of_arrays, write_arrays
 from bplbm.report.cases import CASES_OF, FORMER, GROUPS, OURS, PAPERS, SCHEMES, STAIRS
@@ -282,7 +284,9 @@ def main():
         draw(case, rows)
         text += text_of(case, rows)
         everything += rows
-    (OUT / "report.md").write_text("\n".join(wrapped(["# Speed against error", "", machine(), "", COLUMNS, "", *text])) + "\n")
+    markdown = "\n".join(wrapped(["# Speed against error", "", machine(), "", COLUMNS, "", *text])) + "\n"
+    (OUT / "report.md").write_text(markdown)
+    (OUT / "index.html").write_text(report_page(markdown, OUT))
     if everything:
         (OUT / "rows.json").write_text(json.dumps(everything, indent=1) + "\n")
         columns = list(dict.fromkeys(key for row in everything for key in row if key != "time_share"))
@@ -290,7 +294,7 @@ def main():
             writer = csv.DictWriter(f, columns, extrasaction="ignore")
             writer.writeheader()
             writer.writerows(everything)
-    print(f"report | {OUT / 'report.md'} after {time.monotonic() - start:.0f} s")
+    print(f"report | {OUT / 'report.md'}, {OUT / 'index.html'} after {time.monotonic() - start:.0f} s")
     return 0
 
 
