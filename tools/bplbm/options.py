@@ -66,7 +66,8 @@ def parser():
     p.add_argument("--restart=fault", dest="restart", action="store_const", const="fault",
                    help="go on from the states that both programs kept at a fault")
     p.add_argument("--out", metavar="DIR", help="a new, an empty or an earlier run's folder; default: "
-                   "out/SCENE[-SET][-VARIANT] (of the current folder for a scene outside cases/), where an earlier run is renamed to ….1, ….2 and so on")
+                   "out/SCENE[-SET][-VARIANT] (of the current folder for a scene outside cases/), "
+                   "where an earlier run is renamed to ….1, ….2 and so on")
     p.add_argument("--force", action="store_true", help="replace an earlier run in the output folder")
     p.add_argument("--no-page", action="store_true", help="write no page (index.html in the output folder)")
     p.add_argument("--no-build", action="store_true", help="take the programs as they are built; install and build nothing")

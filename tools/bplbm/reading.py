@@ -2,7 +2,8 @@
 
 import numpy as np
 
-UNIT_OF_COLUMN = {"time": "s", **dict.fromkeys(("x", "y", "z"), "m"), **dict.fromkeys(("vx", "vy", "vz", "ux", "uy", "uz"), "m/s"),
+UNIT_OF_COLUMN = {"time": "s", **dict.fromkeys(("x", "y", "z"), "m"),
+                  **dict.fromkeys(("vx", "vy", "vz", "ux", "uy", "uz"), "m/s"),
                   **dict.fromkeys(("omega", "wx", "wy", "wz"), "rad/s"), **dict.fromkeys(("fx", "fy", "fz", "force"), "N"),
                   **dict.fromkeys(("torque", "tx", "ty", "tz"), "N m"), "pressure": "Pa", "radius": "m"}
 UNIT_OF_FIELD = {"velocity": "m/s", "pressure": "Pa", "solid_fraction": "1"}

@@ -122,7 +122,8 @@ def make_page(args, out):
         from bplbm.page.run import write_page
         return write_page(out, args.scene, scene_files(args), args.words, command(args, out))
     except Exception as error:  # noqa: BLE001
-        print(f"run | warning | no page was made: {type(error).__name__}: {error}; the run's numbers are complete", file=sys.stderr)
+        print(f"run | warning | no page was made: {type(error).__name__}: {error}; the run's numbers are complete",
+              file=sys.stderr)
         return None
 
 

@@ -47,7 +47,8 @@ def parser():
     p = Parser(prog="tools/sweep", description=__doc__, epilog=HELP_ON_MORE, allow_abbrev=False,
                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("scene", nargs="?", help="name of a folder in cases/, or the path of a scene's folder or scene.toml")
-    p.add_argument("--set", action="append", default=[], metavar="KEY=VALUES", help="values between commas, or 1..5; repeatable")
+    p.add_argument("--set", action="append", default=[], metavar="KEY=VALUES",
+                   help="values between commas, or 1..5; repeatable")
     p.add_argument("--let", action="append", default=[], metavar="KEY=EXPRESSION",
                    help="a key that follows from others; repeatable, later ones may use earlier ones")
     p.add_argument("--jobs", type=whole, default=1, metavar="N", help="runs at the same time")
@@ -148,8 +149,8 @@ class Runner:
                "reason": "" if code in ANSWERED else reason_of(text),
                "results": results_of(folder / name) if code in ANSWERED else {}}
         self.table.add(name, row)
-        print(f"sweep | {name} | {WAYS.get(code, code)}, {row['seconds']:.3g} s" + (f" | {row['reason']}" if row["reason"] else ""),
-              flush=True)
+        reason = f" | {row['reason']}" if row["reason"] else ""
+        print(f"sweep | {name} | {WAYS.get(code, code)}, {row['seconds']:.3g} s{reason}", flush=True)
 
     def stop(self, *_):
         """Each run is told once, as by Ctrl-C; a second one ends it at once."""

@@ -216,6 +216,8 @@ class Sweep:
         """A folder's name for a run: the last part of each key with its value."""
         short = {name: re.findall(r"\w+", name)[-1] for name in chosen}
         ambiguous = [word for word in short.values() if list(short.values()).count(word) > 1]
-        words = (f"{name if short[name] in ambiguous else short[name]}-{json.dumps(value) if isinstance(value, list) else value}"
-                 for name, value in chosen.items())
+        words = []
+        for name, value in chosen.items():
+            told = "_".join(map(str, value)) if isinstance(value, list) else value
+            words.append(f"{name if short[name] in ambiguous else short[name]}-{told}")
         return re.sub(r"[^\w.+-]+", "_", "_".join(words)).strip("_")

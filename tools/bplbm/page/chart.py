@@ -20,7 +20,6 @@ class Line:
     x: np.ndarray
     y: np.ndarray
     marked: bool = False  # a dot at each point
-    dashed: bool = False
 
 
 def ticks(low, high, wanted=5):
@@ -62,7 +61,8 @@ def pieces(x, y):
     """Runs of neighbouring finite points."""
     good = np.isfinite(x) & np.isfinite(y)
     edges = np.flatnonzero(np.diff(good.astype(int))) + 1
-    return [(a, b) for a, b in zip(np.split(x, edges), np.split(y, edges), strict=True) if np.isfinite(a[0]) and np.isfinite(b[0])]
+    split = zip(np.split(x, edges), np.split(y, edges), strict=True)
+    return [(a, b) for a, b in split if len(a) and np.isfinite(a[0]) and np.isfinite(b[0])]
 
 
 def legend_places(names, width):
@@ -77,45 +77,57 @@ def legend_places(names, width):
     return places, row + 1 if any(names) else 0
 
 
+class Axes:
+    """Values to places on the paper."""
+
+    def __init__(self, xs, ys, area):
+        self.x, self.y, self.area = span(xs), span(ys), area
+        margin = 0.04 * (self.y[1] - self.y[0])
+        self.y = self.y[0] - margin, self.y[1] + margin
+
+    def place(self, x, y):
+        left, top, right, bottom = self.area
+        return (left + (x - self.x[0]) / (self.x[1] - self.x[0]) * (right - left),
+                bottom - (y - self.y[0]) / (self.y[1] - self.y[0]) * (bottom - top))
+
+    def grid(self):
+        """Lines and numbers at round values."""
+        left, top, right, bottom = self.area
+        for tick in ticks(*self.x):
+            x, _ = self.place(tick, 0.0)
+            yield f'<path class="grid" d="M{x:.1f} {top}V{bottom}"/>'
+            yield f'<text x="{x:.1f}" y="{bottom + 14}" class="middle">{tick:g}</text>'
+        for tick in ticks(*self.y):
+            _, y = self.place(0.0, tick)
+            yield f'<path class="grid" d="M{left} {y:.1f}H{right}"/>'
+            yield f'<text x="{left - 5}" y="{y + 3.5:.1f}" class="end">{tick:g}</text>'
+
+    def curve(self, line, x, y, color):
+        """A line through its finite points, with dots if it is marked."""
+        path = "".join("M" + "L".join("{:.1f} {:.1f}".format(*self.place(a, b)) for a, b in zip(*piece, strict=True))
+                       for piece in pieces(x, y))
+        yield f'<path d="{path}" fill="none" stroke="{color}" stroke-width="1.6"/>'
+        for a, b in zip(x, y, strict=True) if line.marked else ():
+            if np.isfinite(a) and np.isfinite(b):
+                yield '<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="{}"/>'.format(*self.place(a, b), color)
+
+
 def line_chart(lines, x_label, y_label, width=470, height=250):
     """SVG of lines on common axes."""
     data = [(line, *thinned(np.asarray(line.x, float), np.asarray(line.y, float))) for line in lines if len(line.x)]
-    x_low, x_high = span([x for _, x, _ in data])
-    y_low, y_high = span([y for *_, y in data])
-    margin = 0.04 * (y_high - y_low)
-    y_low, y_high = y_low - margin, y_high + margin
     right, bottom = width - RIGHT, height - BOTTOM
     entries, rows = legend_places([line.name for line, *_ in data], right - LEFT)
     top = TOP + 15 * rows
-
-    def place_x(x):
-        return LEFT + (x - x_low) / (x_high - x_low) * (right - LEFT)
-
-    def place_y(y):
-        return bottom - (y - y_low) / (y_high - y_low) * (bottom - top)
-
+    axes = Axes([x for _, x, _ in data], [y for *_, y in data], (LEFT, top, right, bottom))
     out = [f'<svg class="chart" viewBox="0 0 {width} {height}" role="img" aria-label="{html.escape(y_label)} against '
-           f'{html.escape(x_label)}">']
-    for tick in ticks(x_low, x_high):
-        x = place_x(tick)
-        out.append(f'<path class="grid" d="M{x:.1f} {top}V{bottom}"/><text x="{x:.1f}" y="{bottom + 14}" class="middle">{tick:g}</text>')
-    for tick in ticks(y_low, y_high):
-        y = place_y(tick)
-        out.append(f'<path class="grid" d="M{LEFT} {y:.1f}H{right}"/><text x="{LEFT - 5}" y="{y + 3.5:.1f}" class="end">{tick:g}</text>')
-    for i, (line, x, y) in enumerate(data):
-        color = COLORS[i % len(COLORS)]
-        path = "".join("M" + "L".join(f"{place_x(a):.1f} {place_y(b):.1f}" for a, b in zip(*piece, strict=True))
-                       for piece in pieces(x, y))
-        dash = ' stroke-dasharray="5 3"' if line.dashed else ""
-        out.append(f'<path d="{path}" fill="none" stroke="{color}" stroke-width="1.6"{dash}/>')
-        if line.marked:
-            out += [f'<circle cx="{place_x(a):.1f}" cy="{place_y(b):.1f}" r="3" fill="{color}"/>'
-                    for a, b in zip(x, y, strict=True) if np.isfinite(a) and np.isfinite(b)]
+           f'{html.escape(x_label)}">', *axes.grid()]
+    for i, ((line, x, y), (across, row)) in enumerate(zip(data, entries, strict=True)):
+        color, at = COLORS[i % len(COLORS)], (LEFT + across, TOP + 15 * row)
+        out += axes.curve(line, x, y, color)
         if line.name:
-            at = LEFT + entries[i][0], TOP + 15 * entries[i][1]
-            out.append(f'<path d="M{at[0]:.0f} {at[1] - 4}h14" stroke="{color}" stroke-width="2"{dash}/>'
+            out.append(f'<path d="M{at[0]:.0f} {at[1] - 4}h14" stroke="{color}" stroke-width="2"/>'
                        f'<text x="{at[0] + 18:.0f}" y="{at[1]}">{html.escape(line.name)}</text>')
-    out.append(f'<path class="axis" d="M{LEFT} {top}V{bottom}H{right}"/>')
-    out.append(f'<text x="{(LEFT + right) / 2:.0f}" y="{height - 8}" class="middle">{html.escape(x_label)}</text>')
-    out.append(f'<text transform="translate(12 {(top + bottom) / 2:.0f}) rotate(-90)" class="middle">{html.escape(y_label)}</text></svg>')
-    return "".join(out)
+    out += [f'<path class="axis" d="M{LEFT} {top}V{bottom}H{right}"/>',
+            f'<text x="{(LEFT + right) / 2:.0f}" y="{height - 8}" class="middle">{html.escape(x_label)}</text>',
+            f'<text transform="translate(12 {(top + bottom) / 2:.0f}) rotate(-90)" class="middle">{html.escape(y_label)}</text>']
+    return "".join(out) + "</svg>"

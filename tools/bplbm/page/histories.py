@@ -11,15 +11,17 @@ FEW = 6  # particles that have a curve each
 
 
 def charts(run, planes):
-    """SVG charts of a Run. planes: times [s] with mean and largest speed of the fluid [m/s] of each frame."""
+    """SVG charts of a Run. planes: those of its frames, with the speeds of the fluid."""
     found = []
     for name, draw in (("probes", of_particles), ("breaks", of_breaks), ("obstacles", of_obstacles), ("points", of_points)):
         path = run.folder / f"{name}.csv"
         if path.is_file() and path.read_text().count("\n") > 2:
             found += draw(read_table(path), run)
     if len(planes) > 2:
-        time, mean, largest = np.array(planes).T
-        found.append(line_chart([Line("largest", time, largest), Line("mean", time, mean)], "time [s]", "speed of the fluid [m/s]"))
+        time = [plane.time for plane in planes]
+        mean, largest = np.transpose([plane.fluid for plane in planes])
+        found.append(line_chart([Line("largest", time, largest), Line("mean", time, mean)], "time [s]",
+                                "speed of the fluid [m/s]"))
     return found
 
 
@@ -58,7 +60,8 @@ def of_all(table):
     fastest = np.zeros(len(times))
     np.maximum.at(fastest, which, speed)
     up = upward(table)
-    drawn = [line_chart([Line("largest", times, fastest), Line("mean", times, mean(speed))], "time [s]", "speed of the particles [m/s]"),
+    drawn = [line_chart([Line("largest", times, fastest), Line("mean", times, mean(speed))], "time [s]",
+                        "speed of the particles [m/s]"),
              line_chart([Line("", times, mean(table[up]))], "time [s]", f"mean height {up} [m]"),
              line_chart([Line(f"in {a}", times, np.bincount(which, table[f"f{a}"])) for a in axes_of(table)], "time [s]",
                         "force of the fluid on all [N]")]
@@ -100,7 +103,7 @@ def of_obstacles(table, run):
 def of_points(table, run):
     axes = axes_of(table)
     places = np.unique(np.column_stack([table[a] for a in axes]), axis=0)[:FEW]
-    chosen = {", ".join(f"{v:.4g}" for v in place): table.where(np.all([table[a] == v for a, v in zip(axes, place, strict=True)], axis=0))
-              for place in places}
+    here = lambda place: np.all([table[a] == v for a, v in zip(axes, place, strict=True)], axis=0)  # noqa: E731
+    chosen = {", ".join(f"{v:.4g}" for v in place): table.where(here(place)) for place in places}
     return [line_chart([Line(f"at {name} m", t["time"], t[column]) for name, t in chosen.items()], "time [s]", label)
             for column, label in (("pressure", "pressure [Pa]"), ("ux", "velocity in x [m/s]"))]

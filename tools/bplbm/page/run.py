@@ -19,10 +19,10 @@ from bplbm.quantities import default_quantities
 from bplbm.results import Run
 from bplbm.toml_text import read_laid_over, toml
 
-PARTS = {"sweep": "#1f6fb4", "placing": "#7a5bb0", "loads": "#2f8f4e", "exchange": "#b8860b", "output": "#6b7280", "waiting": "#d9dee5",
-         "contacts": "#1f6fb4", "neighbours": "#7a5bb0", "ranks": "#b8860b", "other": "#2f8f4e"}
-MEANING = {"sweep": "stream and collide", "placing": "cover cells", "loads": "sum loads", "exchange": "talk to other ranks and the solid",
-           "waiting": "wait for the other program"}
+PARTS = {"sweep": "#1f6fb4", "placing": "#7a5bb0", "loads": "#2f8f4e", "exchange": "#b8860b", "output": "#6b7280",
+         "waiting": "#d9dee5", "contacts": "#1f6fb4", "neighbours": "#7a5bb0", "ranks": "#b8860b", "other": "#2f8f4e"}
+MEANING = {"sweep": "stream and collide", "placing": "cover cells", "loads": "sum loads",
+           "exchange": "talk to other ranks and the solid", "waiting": "wait for the other program"}
 LARGEST_PICTURE = 6_000_000  # bytes of a picture that is put into the page
 
 
@@ -34,8 +34,8 @@ def judged(r):
     """The row of a result."""
     error = f"{100 * r['error']:+.2f} %"
     verdict = '<span class="good">pass</span>' if r["pass"] else '<span class="bad">miss</span>'
-    return [r["name"], r["value"], named_unit(r), r["reference"], Cell("0.00 %" if error == "-0.00 %" else error, r["error"], "n"),
-            Cell(f"{100 * r['tolerance']:.2g} %", r["tolerance"], "n"), Cell(verdict, r["pass"]), r["source"]]
+    return [r["name"], r["value"], named_unit(r), r["reference"],
+            Cell("0.00 %" if error == "-0.00 %" else error, r["error"], "n"), Cell(f"{100 * r['tolerance']:.2g} %", r["tolerance"], "n"), Cell(verdict, r["pass"]), r["source"]]
 
 
 def results(run):
@@ -51,9 +51,10 @@ def bar(seconds, whole, name):
     parts = {part: s for part, s in seconds.items() if s > 0.002 * whole}
     spans = "".join(f'<span style="width:{100 * s / whole:.2f}%;background:{PARTS.get(part, "#999")}" title="{part}"></span>'
                     for part, s in parts.items())
-    legend = " · ".join(f'<span style="color:{PARTS.get(part, "#999")}">■</span> {MEANING.get(part, part)} {100 * s / whole:.0f} %'
-                        for part, s in sorted(parts.items(), key=lambda item: -item[1]))
-    return f'<p style="margin:8px 0 0"><b>{name}</b>, {whole:.3g} s</p><div class="bar">{spans}</div><p class="soft">{legend}</p>'
+    entries = [f'<span style="color:{PARTS.get(part, "#999")}">■</span> {MEANING.get(part, part)} {100 * s / whole:.0f} %'
+               for part, s in sorted(parts.items(), key=lambda item: -item[1])]
+    return (f'<p style="margin:8px 0 0"><b>{name}</b>, {whole:.3g} s</p><div class="bar">{spans}</div>'
+            f'<p class="soft">{" · ".join(entries)}</p>')
 
 
 def costs(run):
@@ -64,9 +65,9 @@ def costs(run):
         if log.name != "lbm.log" and (seconds := solid_seconds(log.read_text(errors="replace"))):
             text += bar(seconds, sum(seconds.values()), f"the solid ({log.stem})")
     size = ", ".join(f"{part} {mb:.3g} MB" for part, mb in s["megabytes"].items())
-    return text + (f'<p>{s["steps"]} steps of {s["cells"]} cells, {s["mlups"]:.3g} million updates a second; CPU time of the fluid '
-                   f'{s["cpu_seconds"]:.3g} s; memory: {html.escape(size)}. Largest Mach number u/c<sub>s</sub> {s["ma_max"]:.3g}, '
-                   f'mass drift {s["mass_drift"]:.1e}.</p>')
+    return text + (f'<p>{s["steps"]} steps of {s["cells"]} cells, {s["mlups"]:.3g} million updates a second; CPU time of the '
+                   f'fluid {s["cpu_seconds"]:.3g} s; memory: {html.escape(size)}. Largest Mach number u/c<sub>s</sub> '
+                   f'{s["ma_max"]:.3g}, mass drift {s["mass_drift"]:.1e}.</p>')
 
 
 def said(run):
@@ -92,14 +93,15 @@ def pictures(run):
     found = []
     for path in sorted([*run.folder.glob("*.png"), *run.folder.glob("*.gif")]):
         source = data_url(path.read_bytes(), f"image/{path.suffix[1:]}") if path.stat().st_size < LARGEST_PICTURE else path.name
-        found.append(f'<figure><img src="{source}" alt="{html.escape(path.name)}"><figcaption>{html.escape(path.name)}</figcaption></figure>')
+        name = html.escape(path.name)
+        found.append(f'<figure><img src="{source}" alt="{name}"><figcaption>{name}</figcaption></figure>')
     return "".join(found)
 
 
 def commit():
     try:
-        said = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True, timeout=5,
-                              check=False).stdout.strip()
+        said = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True,
+                              timeout=5, check=False).stdout.strip()
     except (OSError, subprocess.TimeoutExpired):
         said = ""
     return said or "unknown"
@@ -141,14 +143,15 @@ def write_page(folder, scene, files, words, line):
     title = " ".join(w for w in (scene.name, s["set"] if s["set"] != "resolved" else "", s["variant"]) if w)
     written = time.localtime((run.folder / "summary.json").stat().st_mtime)
     text = page(title, f"<h1>{html.escape(title)}</h1>",
-                f'<p class="soft">{html.escape(scene.heading())} · {s["physical_seconds"]:.6g} s of flow in {s["wall_seconds"]:.3g} s, '
-                f'{html.escape(s["ending"])} · {time.strftime("%Y-%m-%d %H:%M", written)}</p>',
+                f'<p class="soft">{html.escape(scene.heading())} · {s["physical_seconds"]:.6g} s of flow in '
+                f'{s["wall_seconds"]:.3g} s, {html.escape(s["ending"])} · {time.strftime("%Y-%m-%d %H:%M", written)}</p>',
                 section("Results", *results(run)),
-                f'<div class="row"><div>{section("Set-up", setup(run, tables, scene.folder))}</div><div style="flex:1;min-width:320px">'
-                f'{section("Flow", moving)}</div></div>',
-                section("Histories", f'<div class="row">{"".join(histories.charts(run, [(p.time, *p.fluid) for p in planes]))}</div>'),
+                f'<div class="row"><div>{section("Set-up", setup(run, tables, scene.folder))}</div>'
+                f'<div style="flex:1;min-width:320px">{section("Flow", moving)}</div></div>',
+                section("Histories", f'<div class="row">{"".join(histories.charts(run, planes))}</div>'),
                 section("Pictures of the scene", pictures(run)),
-                section("Where the time went", costs(run)), section("What was on", said(run)), section("Warnings and hints", warnings(run)),
+                section("Where the time went", costs(run)), section("What was on", said(run)),
+                section("Warnings and hints", warnings(run)),
                 section("How to repeat it", *how(run, tables, scene, words, line)),
                 scripts=["flow.js"] if moving else [])
     path = run.folder / "index.html"

@@ -102,7 +102,8 @@ class Drawing:
     def discs(self, discs, fill="#f4dfb8"):
         for x, y, radius in discs[:MOST_DISCS]:
             cx, cy = self.place((x, y))
-            self.parts.append(f'<circle cx="{cx:.1f}" cy="{cy:.1f}" r="{radius * self.scale:.1f}" fill="{fill}" stroke="#6b5d43" '
+            self.parts.append(f'<circle cx="{cx:.1f}" cy="{cy:.1f}" r="{radius * self.scale:.1f}" fill="{fill}" '
+                              'stroke="#6b5d43" '
                               'stroke-width=".6"/>')
 
     def lengths(self):
@@ -114,9 +115,9 @@ class Drawing:
 
     def svg(self):
         width, height = self.width + 2 * ROOM, self.height + 2 * ROOM
-        return (f'<svg viewBox="0 0 {width:.0f} {height:.0f}" style="width:{width:.0f}px;max-width:100%;font:11px system-ui,sans-serif" '
-                f'role="img" aria-label="set-up"><rect x="{ROOM}" y="{ROOM}" width="{self.width:.1f}" height="{self.height:.1f}" '
-                f'fill="#4a90d9" fill-opacity=".10"/>{"".join(self.parts)}</svg>')
+        return (f'<svg viewBox="0 0 {width:.0f} {height:.0f}" role="img" aria-label="set-up" '
+                f'style="width:{width:.0f}px;max-width:100%;font:11px system-ui,sans-serif">'
+                f'<rect x="{ROOM}" y="{ROOM}" width="{self.width:.1f}" height="{self.height:.1f}" fill="#4a90d9" fill-opacity=".10"/>{"".join(self.parts)}</svg>')
 
 
 def first_discs(run, tables):
