@@ -200,7 +200,7 @@ TEST(ShownFluid, SchemesOfTheirOwnShowTheBodyWhereItCoversCellsWhole) {
   const Box& box = kBoxes[0];
   for (const std::string scheme : {"bounce_back", "implicit_immersed_boundary"}) {
     Fluid fluid(box.domain, choice("none"));
-    fluid.use(make_scheme(scheme, box.domain, fluid.lattice(), {{0.5 * kForce, 0.0, 0.0}}));
+    fluid.use(make_scheme(scheme, box.domain, fluid.lattice()));
     Body body = box.body;
     body.velocity = {0.001, 0.0};
     for (int step = 0; step < 20; ++step) {
