@@ -127,14 +127,26 @@ def make_page(args, out):
         return None
 
 
+def colored(word, color):
+    """A word in an ANSI colour on a terminal that has it; plain in a file, or where NO_COLOR is set."""
+    plain = not sys.stdout.isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return word if plain else f"\033[{color}m{word}\033[0m"
+
+
+def with_unit(value, unit):
+    return f"{value:.5g}" if unit in ("1", "") else f"{value:.5g} {unit}"
+
+
 def judge(out):
-    """Prints the results of summary.json. Returns whether all are within their tolerance."""
-    results = json.loads((out / "summary.json").read_text())["results"]
-    for r in results:
-        verdict = "pass" if r["pass"] else "MISS"
-        print(f"run | {verdict} | {r['name']} = {r['value']:.5g} {r['unit']}, reference {r['reference']:.5g} "
+    """Prints the results and quantities of summary.json. Returns whether all results are within their tolerance."""
+    summary = json.loads((out / "summary.json").read_text())
+    for r in summary["results"]:
+        verdict = colored("pass", 32) if r["pass"] else colored("MISS", "1;31")
+        print(f"run | {verdict} | {r['name']} = {with_unit(r['value'], r['unit'])}, reference {with_unit(r['reference'], r['unit'])} "
               f"({r['source']}), error {100 * r['error']:+.2f} %, tolerance {100 * r['tolerance']:.2g} %")
-    return all(r["pass"] for r in results)
+    for q in summary.get("quantities", []):
+        print(f"run | told | {q['name']} = {with_unit(q['value'], q['unit'])}")
+    return all(r["pass"] for r in summary["results"])
 
 
 def comparison_runs(args):

@@ -57,6 +57,25 @@ class Launch(unittest.TestCase):
         self.assertEqual(code, 4)
         self.assertIn("MISS", text)
 
+    def test_results_and_quantities_are_printed_with_their_units_and_without_colour_in_a_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out, text = pathlib.Path(folder), io.StringIO()
+            (out / "summary.json").write_text(json.dumps({
+                "results": [result("drag", 1.01, "1", 1.0, "test", 0.03), result("speed", 2.0, "m/s", 1.0, "test", 0.03)],
+                "quantities": [{"name": "grains gone", "value": 3.0, "unit": "1"}]}))
+            with contextlib.redirect_stdout(text):
+                self.assertFalse(run.judge(out))
+        self.assertEqual(text.getvalue(), "run | pass | drag = 1.01, reference 1 (test), error +1.00 %, tolerance 3 %\n"
+                         "run | MISS | speed = 2 m/s, reference 1 m/s (test), error +100.00 %, tolerance 3 %\n"
+                         "run | told | grains gone = 3\n")
+
+    def test_a_terminal_has_colour_unless_it_wants_none(self):
+        for environment, expected in (({"TERM": "xterm"}, "\033[32mpass\033[0m"), ({"TERM": "xterm", "NO_COLOR": "1"}, "pass"),
+                                      ({"TERM": "dumb"}, "pass")):
+            with mock.patch.object(sys.stdout, "isatty", lambda: True, create=True), \
+                    mock.patch.dict("os.environ", environment, clear=True):
+                self.assertEqual(run.colored("pass", 32), expected)
+
     def test_the_codes_of_the_programs_pass_through(self):
         for job_code in (1, 2, 3):
             self.assertEqual(self.run_main("settling_disc", "--no-study", job_code=job_code)[0], job_code)

@@ -21,6 +21,7 @@ import numpy as np  # noqa: E402
 from bplbm import result, run as launcher  # noqa: E402
 from bplbm.page import flow, histories, picture  # noqa: E402
 from bplbm.page.run import write_page  # noqa: E402
+from bplbm.quantities import of_particles  # noqa: E402
 from bplbm.results import Run  # noqa: E402
 from bplbm.scenes import Scene  # noqa: E402
 
@@ -146,6 +147,13 @@ class Page(Output):
         self.assertIn("Where the time went", text)
         self.assertNotIn("<h2>Flow</h2>", text)
 
+    def test_tables_of_a_head_alone_are_no_fault(self):
+        self.write(2)
+        for name in ("probes", "breaks"):
+            path = self.out / f"{name}.csv"
+            path.write_text(path.read_text().splitlines()[0] + "\n")
+        self.assertIn("broken bonds", self.page())
+
     def test_holds_what_plot_has_drawn(self):
         self.write(2)
         (self.out / "own.png").write_bytes(picture.png(np.zeros((2, 2), np.uint8), np.zeros((256, 3), np.uint8)))
@@ -189,6 +197,27 @@ class Flow(Output):
     def test_breaks_count_from_the_fluids_beginning(self):
         run = self.write(2)
         self.assertAlmostEqual(histories.settling_time(run), 0.04)  # 700 steps, of which 500 coupled
+
+
+class Quantities(unittest.TestCase):
+    def columns(self, rows):
+        return {name: np.array(column, float) for name, column in zip(("time", "id", "x", "y", "vx", "vy"), zip(*rows))}  # noqa: B905
+
+    def told(self, rows, end=1.0):
+        return {q["name"]: q["value"] for q in of_particles(self.columns(rows), {"x": 1.0, "y": 1.0}, end)}
+
+    def test_a_way_goes_on_through_a_periodic_side(self):
+        told = self.told([(0, 1, 0.8, 0.5, 3, 4), (0.5, 1, 0.1, 0.5, 0, 0), (1, 1, 0.4, 0.3, 0, 0), (0, 2, 0.2, 0.2, 0, 0),
+                          (0.5, 2, 0.2, 0.2, 0, 0), (1, 2, 0.2, 0.2, 0, 0)])
+        self.assertAlmostEqual(told["mean displacement in x"], 0.3)
+        self.assertAlmostEqual(told["mean displacement in y"], -0.1)
+        self.assertEqual((told["particles at the end"], told["largest speed of a particle"]), (2, 5))
+
+    def test_those_that_have_left_are_not_there(self):
+        rows = [(0, 1, 0.1, 0.5, 0, 0), (0, 2, 0.2, 0.2, 0, 0), (1, 2, 0.3, 0.2, 0, 0)]
+        self.assertEqual(self.told(rows)["particles at the end"], 1)
+        self.assertAlmostEqual(self.told(rows)["mean displacement in x"], 0.1)
+        self.assertEqual(self.told(rows[:2]), {"particles at the end": 0, "largest speed of a particle": 0})
 
 
 class Picture(unittest.TestCase):
