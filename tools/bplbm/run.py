@@ -117,14 +117,13 @@ def draw(scene, out, until):
 
 
 def make_page(args, out):
-    """index.html of the run. Returns its path; without one says why, for the run is complete all the same."""
+    """index.html of the run; without one says why, for the run is complete all the same."""
     try:
         from bplbm.page.run import write_page
-        return write_page(out, args.scene, scene_files(args), args.words, command(args, out))
+        print(f"run | page {write_page(out, args.scene, scene_files(args), args.words, command(args, out))}")
     except Exception as error:  # noqa: BLE001
         print(f"run | warning | no page was made: {type(error).__name__}: {error}; the run's numbers are complete",
               file=sys.stderr)
-        return None
 
 
 def colored(word, color):
@@ -219,11 +218,10 @@ def go(args, others, out):
     try:
         draw(args.scene, out, args.until is not None)
     finally:  # a plot.py that fails leaves the page, which needs none
-        page = None if args.no_page else make_page(args, out)
+        if not args.no_page:
+            make_page(args, out)
     good = judge(out)
     print(f"run | outputs in {out}")
-    if page:
-        print(f"run | page {page}")
     for picture in sorted(out.glob("*.png")):
         print(f"run | picture {picture}")
     return 0 if good else OUT_OF_TOLERANCE

@@ -1,11 +1,13 @@
-"""What tools/new makes is accepted by lbm, and runs from any folder with tools/run --no-build."""
+"""What tools/new makes is accepted by lbm, and runs from any folder with tools/run and tools/sweep --no-build."""
 
+import csv
 import json
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -42,6 +44,26 @@ class NewScenes(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         summary = json.loads((self.folder / "out" / "sand-short" / "summary.json").read_text())
         self.assertAlmostEqual(summary["physical_seconds"], 0.2, 3)
+        page = self.folder / "out" / "sand-short" / "index.html"
+        self.assertIn(f"run | page {page}", run.stdout)
+        self.assertNotIn("no page was made", run.stderr)
+        for part in ("particle settles in a closed box", 'id="flow-data"', "velocity in y [m/s]", "wait for the other program"):
+            self.assertIn(part, page.read_text())
+        run = self.tool("run", "sand", "--no-build", "--variant", "short", "--force", "--no-page", "--out", "plain")
+        self.assertFalse((self.folder / "plain" / "index.html").exists())
+
+    def test_a_sweep_of_one_keeps_values_results_and_reasons(self):
+        self.tool("new", "sand")
+        done = self.tool("sweep", "sand", "--no-build", "--variant", "short", "--jobs", "2", "--set", "particles.density=1100,1400,-1",
+                         "--let", "fluid.velocity_scale=0.06*particles.density/1000", "--out", "study")
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        with open(self.folder / "study" / "sweep.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["status"] for row in rows], ["ok", "ok", "failed"])
+        self.assertLess(*(float(row["largest speed of a particle [m/s]"]) for row in rows[:2]))
+        self.assertIn("is out of range; give a positive number", rows[2]["reason"])
+        overlay = (self.folder / "study" / "overlays" / "density-1400.toml").read_text()
+        self.assertAlmostEqual(tomllib.loads(overlay)["fluid"]["velocity_scale"], 0.084)
 
     def test_nothing_built_is_said(self):
         self.tool("new", "sand")

@@ -183,6 +183,8 @@ class Curves(unittest.TestCase):
     def test_ticks_are_round_and_no_peak_is_lost(self):
         self.assertEqual(chart.ticks(0, 1), [0, 0.2, 0.4, 0.6, 0.8, 1.0])
         self.assertEqual(chart.ticks(1100, 1250, 3), [1100, 1150, 1200, 1250])
+        self.assertEqual(chart.tick_texts([0.018839, 0.0188395, 0.01884]), ["0.018839", "0.0188395", "0.01884"])
+        self.assertEqual(chart.tick_texts([0, 0.2, 0.4]), ["0", "0.2", "0.4"])
         y = np.zeros(100000)
         y[4321] = 7
         x, thin = chart.thinned(np.arange(100000.0), y)

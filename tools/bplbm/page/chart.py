@@ -8,7 +8,7 @@ import numpy as np
 
 COLORS = ("#1f6fb4", "#d1602b", "#2f8f4e", "#7a5bb0", "#b03a48", "#6b7280", "#b8860b", "#0f8b8d")
 MOST_POINTS = 500  # of a line; what a screen can show
-LEFT, RIGHT, TOP, BOTTOM = 74, 22, 12, 40
+LEFT, RIGHT, TOP, BOTTOM = 80, 22, 12, 40
 LETTER = 6.2  # width of one, about
 
 
@@ -31,6 +31,14 @@ def ticks(low, high, wanted=5):
     step = next(power * f for f in (1, 2, 2.5, 5, 10) if power * f >= raw)
     first = math.ceil(low / step - 1e-9)
     return [round(i * step, 12 - math.floor(math.log10(step))) for i in range(first, math.floor(high / step + 1e-9) + 1)]
+
+
+def tick_texts(values):
+    """Their texts, with as many digits as tell them apart."""
+    largest = max(map(abs, values), default=0.0)
+    step = values[1] - values[0] if len(values) > 1 else largest
+    digits = 4 if not step else max(4, min(12, 2 + math.ceil(math.log10(max(1.0, largest / step)))))
+    return [f"{value:.{digits}g}" for value in values]
 
 
 def thinned(x, y):
@@ -93,14 +101,15 @@ class Axes:
     def grid(self):
         """Lines and numbers at round values."""
         left, top, right, bottom = self.area
-        for tick in ticks(*self.x):
+        xs, ys = ticks(*self.x), ticks(*self.y)
+        for tick, text in zip(xs, tick_texts(xs), strict=True):
             x, _ = self.place(tick, 0.0)
             yield f'<path class="grid" d="M{x:.1f} {top}V{bottom}"/>'
-            yield f'<text x="{x:.1f}" y="{bottom + 14}" class="middle">{tick:g}</text>'
-        for tick in ticks(*self.y):
+            yield f'<text x="{x:.1f}" y="{bottom + 14}" class="middle">{text}</text>'
+        for tick, text in zip(ys, tick_texts(ys), strict=True):
             _, y = self.place(0.0, tick)
             yield f'<path class="grid" d="M{left} {y:.1f}H{right}"/>'
-            yield f'<text x="{left - 5}" y="{y + 3.5:.1f}" class="end">{tick:g}</text>'
+            yield f'<text x="{left - 5}" y="{y + 3.5:.1f}" class="end">{text}</text>'
 
     def curve(self, line, x, y, color):
         """A line through its finite points, with dots if it is marked."""
@@ -129,5 +138,5 @@ def line_chart(lines, x_label, y_label, width=470, height=250):
                        f'<text x="{at[0] + 18:.0f}" y="{at[1]}">{html.escape(line.name)}</text>')
     out += [f'<path class="axis" d="M{LEFT} {top}V{bottom}H{right}"/>',
             f'<text x="{(LEFT + right) / 2:.0f}" y="{height - 8}" class="middle">{html.escape(x_label)}</text>',
-            f'<text transform="translate(12 {(top + bottom) / 2:.0f}) rotate(-90)" class="middle">{html.escape(y_label)}</text>']
+            f'<text transform="translate(10 {(top + bottom) / 2:.0f}) rotate(-90)" class="middle">{html.escape(y_label)}</text>']
     return "".join(out) + "</svg>"
