@@ -1,7 +1,9 @@
 """Every tool answers --help, those with something to choose --list, and a mistake with code 2; nothing is built for it."""
 
 import pathlib
+import shutil
 import subprocess
+import tempfile
 import unittest
 
 TOOLS = pathlib.Path(__file__).resolve().parents[3] / "tools"
@@ -40,6 +42,22 @@ class Answers(unittest.TestCase):
                 said = answer(tool, *NEEDED.get(tool, ()), "--nonsense")
                 self.assertEqual(said.returncode, 2, said.stdout)
                 self.assertIn("--nonsense", said.stderr)
+
+    def test_a_checkout_that_was_moved_says_what_to_do(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder).resolve()
+            (root / "tools").mkdir()
+            (root / "build" / "release").mkdir(parents=True)
+            shutil.copy(TOOLS / "build", root / "tools")
+            shutil.copy(TOOLS.parent / "CMakePresets.json", root)
+            install = root / "tools" / "install"
+            install.write_text("#!/bin/sh\n")
+            install.chmod(0o755)
+            (root / "build" / "release" / "CMakeCache.txt").write_text("CMAKE_HOME_DIRECTORY:INTERNAL=/where/it/was\n")
+            said = subprocess.run([root / "tools" / "build"], capture_output=True, text=True, timeout=30, check=False)
+        self.assertEqual(said.returncode, 2)
+        self.assertIn(f"was made in /where/it/was, and this checkout lies in {root}", said.stderr)
+        self.assertIn("remove build/release, and run this again", said.stderr)
 
 
 if __name__ == "__main__":
