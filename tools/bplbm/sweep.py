@@ -22,15 +22,16 @@ import threading
 import time
 
 from bplbm import output_folder
-from bplbm.options import arguments, label, scene_files, whole
+from bplbm.options import arguments, label, out_folder, scene_files, whole
 from bplbm.project import TOOLS
+from bplbm.scenes import scenes
 from bplbm.sweep_values import Mistake, Sweep, axis, path_of
 from bplbm.toml_text import read_laid_over, toml
 
 OUT_OF_TOLERANCE = 4
 WAYS = {0: "ok", 1: "fault", 2: "refused", 3: "numerics", OUT_OF_TOLERANCE: "out of tolerance"}
 ANSWERED = (0, OUT_OF_TOLERANCE)  # runs that came to their end
-HELP_ON_MORE = "options of tools/run, as --variant or --until, reach every run"
+HELP_ON_MORE = "Other options are those of tools/run, as --variant, --until or --threads, and reach every run."
 
 
 def fail(text):
@@ -51,6 +52,7 @@ def parser():
                    help="values between commas, or 1..5; repeatable")
     p.add_argument("--let", action="append", default=[], metavar="KEY=EXPRESSION",
                    help="a key that follows from others; repeatable, later ones may use earlier ones")
+    p.add_argument("--parameter-set", default="resolved", metavar="NAME", help="what tools/run calls --set: resolved, literal, fine")
     p.add_argument("--jobs", type=whole, default=1, metavar="N", help="runs at the same time")
     p.add_argument("--out", metavar="DIR", help="a new folder or that of an earlier sweep; default: out/SCENE-sweep")
     p.add_argument("--retry", action="store_true", help="run again what has failed")
@@ -123,8 +125,8 @@ def results_of(folder):
 class Runner:
     """Starts the runs, some at a time, and ends them in good order at Ctrl-C."""
 
-    def __init__(self, args, words, table):
-        self.args, self.words, self.table = args, words, table
+    def __init__(self, words, table):
+        self.words, self.table = words, table
         self.stopped, self.jobs = threading.Event(), set()
 
     def run(self, name, chosen, overlay, hashed):
@@ -140,6 +142,8 @@ class Runner:
             with subprocess.Popen(line, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True,
                                   env={**os.environ, "MPLBACKEND": "Agg"}) as job:
                 self.jobs.add(job)
+                if self.stopped.is_set():  # just now, and nobody has told this one
+                    job.send_signal(signal.SIGINT)
                 code = job.wait()
                 self.jobs.discard(job)
         if self.stopped.is_set():
@@ -158,10 +162,11 @@ class Runner:
         for job in list(self.jobs):
             job.send_signal(signal.SIGINT)
 
-    def all(self, runs):
+    def all(self, runs, jobs):
+        """All runs, some at the same time."""
         before = {s: signal.signal(s, self.stop) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
-            with concurrent.futures.ThreadPoolExecutor(self.args.jobs) as pool:
+            with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
                 for done in [pool.submit(self.run, *run) for run in runs]:
                     done.result()
         finally:
@@ -180,8 +185,8 @@ def planned(sweep, args):
     return runs
 
 
-def take_folder(folder, chosen, scene):
-    """Makes the folder ours, unless it is somebody else's."""
+def take_folder(folder, scene):
+    """Makes the folder ours, unless it is somebody else's. Returns a Hold on it."""
     if folder.exists() and not folder.is_dir():
         fail(f"{folder}: is no folder; choose another --out")
     if not output_folder.is_empty(folder) and not (output_folder.is_marked(folder) and (folder / "overlays").is_dir()):
@@ -195,19 +200,27 @@ def take_folder(folder, chosen, scene):
         fail(refused)
 
 
+def checked(args):
+    """Arguments of tools/run that a sweep can pass on."""
+    for name in ("out", "restart", "force", "record", "overlay"):
+        if getattr(args, name):
+            fail(f"--{name} is of a single run, and cannot be given to a sweep")
+    if key := next((key for key, value in args.own if value == "all"), None):
+        fail(f"--{key} all: a sweep takes one value of it")
+    return args
+
+
 def main():
     options, rest = parser().parse_known_args()
     if not options.scene:
         if rest:
             fail(f"no option '{rest[0]}' without a scene; see tools/sweep --help")
         if options.list:
-            from bplbm.scenes import scenes
             print("\n".join(scenes()))
             return 0
         fail("which scene? as tools/sweep settling_disc --set particles.density=1100,1250")
-    words = [options.scene, *rest]
-    args = arguments(words)
-    args.jobs, args.overlay_of = options.jobs, None
+    words = [options.scene, *rest, "--set", options.parameter_set]
+    args = checked(arguments(words))
     try:
         if not options.set:
             raise Mistake("nothing is varied; add --set KEY=VALUE,VALUE")
@@ -223,21 +236,20 @@ def main():
         return 0
     if options.look:
         return 0
-    from bplbm.options import out_folder
     out = pathlib.Path(options.out or f"{out_folder(args)}-sweep").resolve()
     return go(args, words, options, sweep, runs, out)
 
 
 def go(args, words, options, sweep, runs, out):
     """The runs that are missing, the table and the page. Returns the exit code."""
-    hold = take_folder(out, bool(options.out), args.scene)
+    from bplbm.page.sweep import write_page, write_table  # they need numpy, which --look does without
+    hold = take_folder(out, args.scene)
     table = Table(out)
     missing = [run for run in runs if not table.has(run[0], run[3], options.retry)]
     if len(missing) < len(runs):
         print(f"sweep | {len(runs) - len(missing)} of {len(runs)} runs are there already")
-    runner = Runner(args, words, table)
-    runner.all(missing)
-    from bplbm.page.sweep import write_page, write_table
+    runner = Runner(words, table)
+    runner.all(missing, options.jobs)
     rows = {name: table.rows[name] for name, *_ in runs if name in table.rows}
     names = [a.name for a in sweep.axes]
     print(f"sweep | table {write_table(out, names, rows)}")

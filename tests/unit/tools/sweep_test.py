@@ -164,6 +164,17 @@ class Command(unittest.TestCase):
         self.assertEqual(self.started(), [])
         self.assertEqual([p.name for p in self.out.iterdir()], ["thesis.txt"])
 
+    def test_what_belongs_to_a_single_run_is_refused(self):
+        for words in (["--restart"], ["--record", "x.h5"], ["--force"]):
+            self.assertEqual(self.main("--set", "fluid.density=1", *words), 2, words)
+        self.assertEqual(self.started(), [])
+
+    def test_a_parameter_set_is_laid_under_the_values(self):
+        (self.folder / "sand" / "fine.toml").write_text("[numerics]\ncell = 1\n")
+        self.assertEqual(self.main("--set", "fluid.density=1", "--parameter-set", "fine"), 0)
+        self.assertEqual(self.main("--set", "fluid.density=1", "--parameter-set", "coarse"), 2)
+        self.assertEqual(self.started(), ["1"])
+
     def test_the_page_needs_nothing_else(self):
         self.main("--set", "fluid.density=1,2")
         page = (self.out / "index.html").read_text()
