@@ -37,9 +37,24 @@ class Table(dict):
 
 
 def read_table(path):
-    """Columns of a CSV file of ours: a Table, name -> array."""
-    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
-    return Table({name: rows[name] for name in rows.dtype.names})
+    """Columns of a CSV file of ours: a Table, name -> array of numbers, or of words as the `mode` of a break."""
+    with open(path) as file:
+        names = file.readline().strip().split(",")
+        lines = [line for line in file.read().splitlines() if line]
+    if not lines:
+        return Table({name: np.zeros(0) for name in names})
+    try:
+        columns = np.loadtxt(lines, delimiter=",", ndmin=2).T
+    except ValueError:  # there are words
+        columns = map(numbers_or_words, zip(*(line.split(",") for line in lines), strict=True))
+    return Table(zip(names, columns, strict=True))
+
+
+def numbers_or_words(column):
+    try:
+        return np.array(column, float)
+    except ValueError:
+        return np.array(column)
 
 
 class Field:
@@ -119,6 +134,13 @@ class Frame:
             cell, origin = file.attrs["cell"], dict(file.attrs)
         return {axis: origin.get(f"origin_{axis}", 0.0) + cell * (np.arange(n) + 0.5)
                 for axis, n in zip("xyz", reversed(cells))}  # noqa: B905  (two or three of them)
+
+    def middle(self, name):
+        """The plane of cells in the middle of y of a field in three dimensions, [nz][nx]; no more is read from the file."""
+        import h5py
+        with h5py.File(self.path) as file:
+            data = file[self.group][name]
+            return data[:, data.shape[1] // 2]
 
     def _field(self, name):
         return Field(name, self._read(name), self.time, self.coordinates)

@@ -58,6 +58,22 @@ class Page(unittest.TestCase):
             self.assertAlmostEqual(float(a), float(b), delta=0.01 * abs(float(b)), msg=f"{printed}\n{expected}")
 
 
+class Tables(unittest.TestCase):
+    def read(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "a.csv")
+            path.write_text(text)
+            return reading.read_table(path)
+
+    def test_numbers_words_one_row_and_none(self):
+        table = self.read("time,mode,force\n1,tension,2.5\n2,shear,nan\n")
+        self.assertEqual(table["mode"].tolist(), ["tension", "shear"])
+        self.assertEqual((table["time"].tolist(), table.units["force"]), ([1.0, 2.0], "N"))
+        self.assertEqual(table.where(table["mode"] == "shear")["time"].tolist(), [2.0])
+        self.assertEqual(self.read("time,x\n1,2\n")["x"].tolist(), [2.0])
+        self.assertEqual(self.read("time,x\n")["x"].tolist(), [])
+
+
 class Field(unittest.TestCase):
     """A box of 4 × 3 × 2 cells of 0.5 m, whose value tells the cell."""
 

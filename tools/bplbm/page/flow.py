@@ -19,17 +19,14 @@ class Plane:
     pressure: np.ndarray
     discs: np.ndarray  # [n][3]
     bonds: np.ndarray  # [n][5]: both ends, state
-    fluid: tuple  # mean and largest speed of the whole box [m/s]
+    fluid: tuple  # mean and largest speed [m/s]
 
 
 def cut(frame, size):
     """The frame in two dimensions, or its middle plane normal to y in three."""
-    velocity, pressure = frame.velocity, frame.pressure.values
-    speed = np.linalg.norm(velocity.values, axis=-1)
+    read = frame.middle if len(size) == 3 else lambda name: getattr(frame, name).values
+    speed, pressure = np.linalg.norm(read("velocity"), axis=-1), read("pressure")
     fluid = float(speed.mean()), float(speed.max())
-    if len(size) == 3:
-        middle = speed.shape[1] // 2
-        speed, pressure = speed[:, middle], pressure[:, middle]
     return Plane(frame.time, speed, pressure, discs_of(frame, size), bonds_of(frame) if len(size) == 2 else np.zeros((0, 5)),
                  fluid)
 

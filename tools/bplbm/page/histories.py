@@ -21,7 +21,7 @@ def charts(run, planes):
         time = [plane.time for plane in planes]
         mean, largest = np.transpose([plane.fluid for plane in planes])
         found.append(line_chart([Line("largest", time, largest), Line("mean", time, mean)], "time [s]",
-                                "speed of the fluid [m/s]"))
+                                "speed of the fluid [m/s]" if "box_z" not in run.parameters else "speed of the fluid, plane above [m/s]"))
     return found
 
 
