@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <future>
+#include <regex>
 
 #include "tests/support/coupled_job.h"
 
@@ -220,6 +221,31 @@ endloop
 endfacet
 endsolid floor
 )";
+
+/// Not called on the world: those that need a topology or a partner's communicator, or start
+/// others.
+bool needs_another(const std::string& name) {
+  static const std::regex needs(
+      "MPI_(In|N)eighbor_.*|MPI_Cart_(coords|get|rank|shift|sub)|MPI_Cartdim_get|"
+      "MPI_Graph_(get|neighbors.*)|MPI_Graphdims_get|MPI_Dist_graph_neighbors.*|"
+      "MPI_Comm_remote_.*|MPI_Intercomm_merge|MPI_Comm_(accept|connect|spawn.*|call_errhandler)");
+  return std::regex_match(name, needs);
+}
+
+TEST(WorldOfALibrary, IsItsOwnProgramInEveryCall) {
+  const test::TemporaryFolder folder;
+  const std::string caller = test::kBin + "/world_caller";
+  const auto job = test::run(mpirun({caller + " idle"}, {caller, 2}), folder.path(), 30.0);
+  expect_end(job, 0, {});
+  for (const char* name : {
+#define X(name) #name,
+#include "mpi_calls.inc"
+#undef X
+       })
+    EXPECT_NE(needs_another(name),
+              job.output.find(std::string("called ") + name + "\n") != std::string::npos)
+        << name;
+}
 
 TEST(VtkDumps, WorkOnTwoSolidRanks) {
   Scene scene;
