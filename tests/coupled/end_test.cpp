@@ -190,6 +190,22 @@ INSTANTIATE_TEST_SUITE_P(
                           "until [ -e out/summary.json ]; do sleep 0.1; done; sleep 0.3"}),
     [](const auto& info) { return info.param.name; });
 
+// Without a partner whose time-out would end it.
+TEST(StoppedFluidAlone, IsNamedByItsNeighbour) {
+  const test::TemporaryFolder folder;
+  folder.write("longer.toml", "[run]\nend_time = 1000.0\n");
+  const std::string job =
+      "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+      "OMPI_MCA_mpi_yield_when_idle=1 BPLBM_TIMEOUT=2 mpirun --bind-to none --oversubscribe -np "
+      "2 " +
+      kLbm + " " BPLBM_SOURCE_DIR "/cases/shear_layer/scene.toml longer.toml --progress none";
+  expect_end(test::run("(" + job +
+                           ") & job=$!; sleep 1.5; kill -STOP $(pgrep -x -P $job lbm | "
+                           "sort -n | sed -n 2p); wait $job",
+                       folder.path(), 40.0),
+             1, {"lbm | error | fluid rank 1 does not answer"});
+}
+
 // Both on one core, where MPI hands it over at every turn of a poll.
 TEST(EndlessScript, EndsWithTheTimeOut) {
   Scene scene;
