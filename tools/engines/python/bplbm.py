@@ -177,7 +177,7 @@ class Solid:
         if kind == FAULT:
             fault = Reader(payload)
             code, reason = fault.take("i"), fault.text()
-            self._leave(Stop(f"the fluid program stopped: {reason}", code, told=code != 2))
+            self._leave(Stop(f"the fluid program stopped: {reason}", code))
 
     def _send(self, kind, payload, tag=FRAME_TAG):
         self.wire.Send(struct.pack("<IIQ", MAGIC, kind, len(payload)) + payload, 0, tag)
