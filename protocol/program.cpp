@@ -5,6 +5,7 @@
 #include <mpi.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -23,7 +24,7 @@ namespace {
 constexpr double kFarewellSeconds = 3.0;
 constexpr double kEndSeconds = 2.0;     // a partner that has ended needs none of them
 constexpr double kDefaultLimit = 60.0;  // of the end, where the program has set none
-volatile std::sig_atomic_t caught = 0;
+volatile std::sig_atomic_t caught = 0, signals = 0;
 std::timespec caught_at{};
 volatile std::sig_atomic_t code_at_deadline = 0;
 std::string text_at_deadline;
@@ -31,6 +32,7 @@ std::string text_at_deadline;
 void note_signal(int signal) {
   if (!caught) clock_gettime(CLOCK_MONOTONIC, &caught_at);
   caught = signal;
+  signals = signals + 1;
 }
 
 double seconds_since_signal() {
@@ -115,8 +117,7 @@ class End {
       if (ending.missing.empty()) return;  // not ours to ask: it may wait in MPI's own end
       ending = wait(limit());
       const std::vector<LifeSign> now = signs_of(partner);
-      std::vector<int> lost = ending.missing;
-      std::erase_if(lost, [&](int r) { return goes_on(before.at(r), now.at(r)); });
+      const std::vector<int> lost = without_progress(ending.missing, before, now);
       if (!lost.empty()) {
         const std::string silent = silent_ranks();
         give_up(!silent.empty() ? silent
@@ -140,14 +141,21 @@ class End {
 
   static double limit() { return std::isfinite(wait_limit()) ? wait_limit() : kDefaultLimit; }
 
-  /// A rank that waits does so for another, which is asked as well.
-  static bool goes_on(const LifeSign& before, const LifeSign& now) {
-    return now.life == Life::Waits || (now.life == Life::Works && now.turns != before.turns);
+  /// Of those that are missing. One that waits does so for another, unless nobody does anything.
+  static std::vector<int> without_progress(const std::vector<int>& missing,
+                                           const std::vector<LifeSign>& before,
+                                           const std::vector<LifeSign>& now) {
+    const auto moves = [&](int r) { return now.at(r).turns != before.at(r).turns; };
+    std::vector<int> lost;
+    for (const int r : missing)
+      if (now[r].life == Life::Silent || (now[r].life == Life::Works && !moves(r)))
+        lost.push_back(r);
+    return lost.empty() && std::none_of(missing.begin(), missing.end(), moves) ? missing : lost;
   }
 
   Ending wait(double seconds) {
     const Ending ending = channel_.await_farewell(seconds);
-    if (caught) abort_job(exit_code_ ? exit_code_ : kFault);
+    if (signals != signals_before_) abort_job(exit_code_ ? exit_code_ : kFault);
     if (!ending.fault) return ending;
     say(stderr, "error",
         fmt::format("the {} program stopped: {}", channel_.remote_name(), ending.fault->reason));
@@ -178,6 +186,7 @@ class End {
   int& exit_code_;
   const std::string& program_;
   Channel& channel_;
+  const std::sig_atomic_t signals_before_ = signals;  // one may have led to this end
 };
 
 }  // namespace

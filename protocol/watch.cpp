@@ -231,7 +231,11 @@ class Lookout {
     const auto absent =
         ranks_where(scope, [&](std::size_t r) { return answers[r].life == Life::Absent; });
     if (!absent.empty()) return "no sign of " + names(absent);
-    return "";
+    const auto moved =
+        ranks_where(scope, [&](std::size_t r) { return answers[r].turns != earlier_[r].turns; });
+    return moved.empty() && scope == Scope::Program
+               ? "the ranks of this program wait for each other"
+               : "";
   }
 
   /// The lowest rank that lives says it for all of its program.

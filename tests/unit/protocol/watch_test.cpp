@@ -118,6 +118,17 @@ TEST(WatchDeathTest, AWaitEndsWhereARankDoesNothing) {
       1, "error \\| fluid rank 1 has not come so far");
 }
 
+TEST(WatchDeathTest, AWaitEndsWhereAllWait) {
+  setenv("PMIX_NAMESPACE", ("watch_test." + std::to_string(getpid())).c_str(), 1);
+  const Rank one(1, wait_on);
+  as_fluid_rank_0(
+      [] {
+        limit_waits(0.5);
+        wait_on();
+      },
+      1, "error \\| the ranks of this program wait for each other");
+}
+
 TEST(WatchDeathTest, AWaitGoesOnWhereAllMakeProgressAndOtherProgramsDoNotMatter) {
   setenv("PMIX_NAMESPACE", ("watch_test." + std::to_string(getpid())).c_str(), 1);
   const Rank one(1, keep_calling);
