@@ -32,11 +32,13 @@ template <class Ready>
 bool poll(double seconds, Ready&& ready) {
   constexpr int busy_turns = 2000, turns_a_look = 50;
   const Waiting here("an exchange");
-  if (ready()) return true;
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  for (int turn = 1; turn < busy_turns; ++turn) {
+  std::chrono::time_point<Clock, std::chrono::duration<double>> end;  // most waits end before it
+  for (int turn = 1; turn <= busy_turns; ++turn) {
     if (ready()) return true;
-    if (turn % turns_a_look == 0 && Clock::now() >= end) return false;
+    if (turn % turns_a_look != 0) continue;
+    const auto now = Clock::now();
+    if (turn == turns_a_look) end = now + std::chrono::duration<double>(seconds);
+    if (now >= end) return ready();
   }
   while (Clock::now() < end) {
     if (ready()) return true;
@@ -101,7 +103,7 @@ class MpiChannel final : public Channel {
   Ending await_farewell(double seconds) noexcept override {
     Ending ending;
     poll(seconds, [&] {
-      if (auto fault = hear_urgent(); fault && !raised_) ending.fault = std::move(fault);
+      if (const Fault* fault = hear_urgent(); fault && !raised_) ending.fault = *fault;
       ending.missing.clear();
       for (int r = 0; r < remote_size_; ++r)
         if (!left_[r] && !(raised_ && failed_[r])) ending.missing.push_back(r);
@@ -130,23 +132,23 @@ class MpiChannel final : public Channel {
   /// @throws PeerFault, or ProtocolError where a signal has come
   void throw_if_stopped() {
     throw_if_signalled();
-    if (const auto fault = hear_urgent()) throw PeerFault(*fault);
+    if (const Fault* fault = hear_urgent()) throw PeerFault(*fault);
   }
 
-  /// Takes an urgent frame if there is one. @return the fault that it is
-  std::optional<Fault> hear_urgent() {
+  /// Takes an urgent frame if there is one. @return the fault that it is, or null
+  const Fault* hear_urgent() {
     MPI_Status status;
     int here = 0;
     MPI_Iprobe(MPI_ANY_SOURCE, kUrgentTag, remote_, &here, &status);
-    if (!here) return std::nullopt;
+    if (!here) return nullptr;
     const int source = status.MPI_SOURCE;
     const Bytes frame = take(status);
     if (kind_of(frame) == Kind::Fault) {
       failed_[source] = true;
-      return decode<Fault>(frame);
+      return &fault_.emplace(decode<Fault>(frame));
     }
     left_[source] = Clock::now();
-    return std::nullopt;
+    return nullptr;
   }
 
   /// After its farewell a rank sends nothing more; what it sent before may still be on its way.
@@ -175,6 +177,7 @@ class MpiChannel final : public Channel {
   std::vector<Bytes> outgoing_;
   Bytes urgent_frame_;
   std::vector<MPI_Request> urgent_;
+  std::optional<Fault> fault_;                          ///< the last one of the other side
   bool raised_ = false;                                 ///< this side has failed
   std::vector<std::optional<Clock::time_point>> left_;  ///< [remote] when its farewell came
   std::vector<bool> failed_;                            ///< [remote] whether a fault of it came
