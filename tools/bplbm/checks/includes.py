@@ -22,7 +22,7 @@ LBM = {
 }
 # Library header (prefix) -> files that may use it.
 ONLY = {
-    "mpi.h": r"protocol/(mpi_channel|program).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
+    "mpi.h": r"protocol/(mpi_channel|mpi_calls|program).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
     "hdf5": r"protocol/(hdf5_file|trace).*|lbm_solver/io/field_writer\.cpp",
     "lammps": r"liggghts_coupling/(host|bond)/.*",
     "atom.h": r"liggghts_coupling/(host|bond)/.*",

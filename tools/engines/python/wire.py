@@ -24,7 +24,7 @@ STATE = np.dtype([("id", "i8"), ("x", "f8", 3), ("v", "f8", 3), ("omega", "f8", 
 SHAPE = np.dtype([("id", "i8"), ("radius", "f8"), ("mass", "f8"), ("inertia", "f8"), ("type", "i8")])  # m, kg, kg m²
 LOAD = np.dtype([("id", "i8"), ("force", "f8", 3), ("torque", "f8", 3)])
 
-MAGIC, VERSION, SOLID, LAST, STOP, CHECKPOINT = 0x4C425042, 3, 2, 1, 2, 4
+MAGIC, VERSION, SOLID, LAST, STOP, CHECKPOINT = 0x4C425042, 4, 2, 1, 2, 4
 HELLO, ANSWER, STATES, LOADS, GOODBYE, FAULT, FAREWELL = range(1, 8)
 FRAME_TAG, URGENT_TAG, ROLE_TAG, LEADER_TAG = 7001, 7002, 7003, 7004
 # The hello field by field: s text, ? optional, other letters as in Python's struct.
@@ -47,7 +47,7 @@ class Solid:
     """A session with the fluid. `interval` is the number of the next states."""
 
     def __init__(self, program):
-        self.program, self.interval, self.known, self.flags = program, 0, set(), 0
+        self.program, self.interval, self.known, self.flags, self.timeout, self.left = program, 0, set(), 0, 60.0, False
 
     # ---- what an engine calls ----------------------------------------------------------------------------------
 
@@ -144,18 +144,19 @@ class Solid:
         except Stop as stop:
             self._leave(stop)
         self.variables, self.interval = self.fluid["variables"], self.fluid["first_interval"]
+        self.timeout = self.number("coupling_timeout", self.timeout)  # longest wait [s]
         self.kept = pathlib.Path(self.text("restart_file", "none")).name
         return self
 
     def __exit__(self, kind, error, trace):
         if error is not None:
             self._leave(error if isinstance(error, Stop) else Stop(f"{kind.__name__}: {error}"))
-        self.wire.Disconnect()
+        self._part()
 
     def _leave(self, stop):
         print(f"{self.program} | error | {stop}", file=sys.stderr, flush=True)
         if stop.code == 2 and stop.told:  # a refusal: both leave in good order
-            self.wire.Disconnect()
+            self._part()
             sys.exit(stop.code)
         if stop.told:
             self._send(FAREWELL, b"", URGENT_TAG)
@@ -164,18 +165,35 @@ class Solid:
         time.sleep(1.0)  # the fluid ends the job
         MPI.COMM_WORLD.Abort(stop.code)
 
+    def _part(self):
+        """The end in good order: nothing more to say. (mpi4py ends MPI when Python ends.)"""
+        self._send(FAREWELL, b"", URGENT_TAG)
+        end = time.monotonic() + self.timeout
+        while not self.left and not self.wire.Iprobe(0, URGENT_TAG):
+            if time.monotonic() > end:
+                self._leave(Stop(f"no farewell from the fluid for {self.timeout} s"))
+            time.sleep(0.001)
+        kind, payload = (FAREWELL, b"") if self.left else self._take(URGENT_TAG)
+        if kind == FAULT:
+            fault = Reader(payload)
+            code, reason = fault.take("i"), fault.text()
+            self._leave(Stop(f"the fluid program stopped: {reason}", code))
+
     def _send(self, kind, payload, tag=FRAME_TAG):
         self.wire.Send(struct.pack("<IIQ", MAGIC, kind, len(payload)) + payload, 0, tag)
 
-    def _receive(self, kind, seconds=60.0):
-        end = time.monotonic() + seconds
+    def _receive(self, kind):
+        end = time.monotonic() + self.timeout
         while not self.wire.Iprobe(0, FRAME_TAG):
             if self.wire.Iprobe(0, URGENT_TAG):
-                fault = Reader(self._take(URGENT_TAG)[1])
-                code, reason = fault.take("i"), fault.text()
-                raise Stop(f"the fluid program stopped: {reason}", code, told=True)
+                urgent, payload = self._take(URGENT_TAG)
+                if urgent == FAULT:
+                    fault = Reader(payload)
+                    code, reason = fault.take("i"), fault.text()
+                    raise Stop(f"the fluid program stopped: {reason}", code, told=True)
+                self.left, end = True, time.monotonic() + 1.0  # what it sent before may still be on its way
             if time.monotonic() > end:
-                raise Stop(f"no answer from the fluid for {seconds} s")
+                raise Stop("the fluid left" if self.left else f"no answer from the fluid for {self.timeout} s")
             time.sleep(0)
         got, payload = self._take(FRAME_TAG)
         if got != kind:
