@@ -82,7 +82,7 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
   for (const Stage& stage : kStages) {
     const bool python = peer == kPython;
     if (python && (stage.name == "hello" || stage.name == "goodbye" || stage.name == "version"))
-      continue;  // bplbm.py knows no goodbye, and says its hello and its answer at once
+      continue;  // wire.py knows no goodbye, and says its hello and its answer at once
     jobs.emplace_back(&stage, std::async(std::launch::async, [&stage, &peer = peer, &how = how] {
       const Scene scene;
       return test::run(scene.job(peer + stage.name + " " + how), scene.folder(), 30.0);
