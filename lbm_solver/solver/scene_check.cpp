@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/boundary/patch.h"
+#include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/driven_speed.h"
 
 namespace lbm {
@@ -224,6 +226,20 @@ void check_drives(const Scene& s, Plan& plan) {
           drive.what, drive.speed, drive.speed / s.fluid.velocity_scale));
 }
 
+/// Keys that have no effect in this scene.
+void check_idle_keys(const Scene& s, Plan& plan) {
+  if (s.fluid.body_force_ramp > s.end_time)
+    plan.warnings.push_back(
+        fmt::format("fluid.body_force_ramp = {:.4g} s is longer than the run: the force reaches "
+                    "{:.3g} of its value",
+                    s.fluid.body_force_ramp,
+                    InTime{s.fluid.body_force_ramp / plan.units.dt, 0.0}.factor(
+                        static_cast<std::int64_t>(s.end_time / plan.units.dt))));
+  if (s.numerics.weight != "auto" && by_resistance(plan.kernel.solid_term))
+    plan.warnings.push_back(fmt::format("numerics.weight = \"{}\" has no effect: {} has no weight",
+                                        s.numerics.weight, plan.kernel.solid_term));
+}
+
 /// Gravity that points upwards, or that nothing holds.
 void check_gravity(const Scene& s, Plan& plan) {
   const int up = s.box.dimension - 1;
@@ -337,6 +353,7 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_balance(s, plan);
   check_drives(s, plan);
   check_sizes(s, plan);
+  check_idle_keys(s, plan);
   check_overlaps(s, plan);
   if (s.coupling) check_gravity(s, plan);
   if (s.coupling) check_viscosity(s, plan);

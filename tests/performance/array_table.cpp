@@ -11,6 +11,7 @@
 
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/fluid.h"
+#include "tests/support/array_references.h"
 #include "tests/support/free_disc.h"
 
 namespace lbm {
@@ -22,7 +23,7 @@ using std::numbers::pi;
 struct Array {
   int dimension;
   double fraction;
-  double drag;  ///< discs: F/(mu U) [Sangani, Acrivos 1982]; spheres: F/(6 pi mu a U) [Zick, Homsy]
+  double drag;  ///< discs: F/(μU); spheres: F/(6πμaU)
 
   double radius(int cells) const {
     return cells * (dimension == 2 ? std::sqrt(fraction / pi) : std::cbrt(0.75 * fraction / pi));
@@ -33,13 +34,15 @@ struct Array {
   const char* name() const { return dimension == 2 ? "disc" : "sphere"; }
 };
 
-const std::vector<Array> kDiscs{{2, 0.05, 15.557822}, {2, 0.1, 24.831675},  {2, 0.2, 51.526949},
-                                {2, 0.3, 102.881304}, {2, 0.4, 217.894315}, {2, 0.5, 532.548118}};
-const std::vector<Array> kSpheres{
-    {3, 0.064, 2.810}, {3, 0.125, 4.292}, {3, 0.343, 15.4}, {3, 0.5236, 42.1}};
+std::vector<Array> arrays(int dimension, const std::map<double, double>& drag) {
+  std::vector<Array> list;
+  for (const auto& [fraction, value] : drag) list.push_back({dimension, fraction, value});
+  return list;
+}
+const std::vector<Array> kDiscs = arrays(2, test::kDiscDrag),
+                         kSpheres = arrays(3, test::kSphereDrag);
 const std::vector<double> kDiameters{4, 5, 6, 8, 10, 16};
-const std::vector<Vec3> kPlaces{
-    {0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}, {0.23, 0.41, 0.12}, {0.37, 0.12, 0.45}};
+const std::vector<Vec3>& kPlaces = test::kPlacesInACell;
 
 struct Term {
   std::string term, what;
