@@ -127,7 +127,7 @@ class Particles {
   };
   /// What is kept of a particle from one interval to the next.
   struct Past {
-    std::int64_t id = 0;
+    std::int64_t id = 0, epoch = 0;
     Motion motion;
     protocol::Vec3 force{}, torque{};  ///< as sent, whole where virtual masses are about
     Motion mean_change;                ///< of the last intervals (LightRule)
