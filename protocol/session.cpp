@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "protocol/agreement.h"
+#include "protocol/numbers.h"
 #include "protocol/routing.h"
 
 namespace protocol {
@@ -64,6 +65,16 @@ void expect_finite(const Record& record, const Vec3& value, const char* what,
                   "at interval {}; correct its place, or delete it",
                   s.id, s.x[0], s.x[1], s.x[2], interval),
       kBadInput);
+}
+
+/// What a fluid's scene says of the longest wait.
+double timeout_of(const Hello& fluid, double fallback) {
+  for (const Variable& v : fluid.variables)
+    if (v.name == "coupling_timeout") {
+      const auto seconds = to_number<double>(v.value);
+      if (seconds && *seconds > 0.0) return *seconds;
+    }
+  return fallback;
 }
 
 void expect_interval(const StepHeader& head, std::int64_t expected, const Channel& channel,
@@ -262,8 +273,10 @@ SolidSession::SolidSession(Channel& channel, double timeout)
       told_(channel.remote_size()),
       sent_(channel.remote_size()) {
   const Stopwatch watch(waited_);
-  for (int r = 0; r < channel_->remote_size(); ++r)
+  for (int r = 0; r < channel_->remote_size(); ++r) {
     fluid_.push_back(decode<Hello>(channel_->receive(r, {timeout_, "its hello"})));
+    timeout_ = timeout_of(fluid_.back(), timeout_);
+  }
 }
 
 void SolidSession::agree(const Hello& hello) {

@@ -96,6 +96,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   whole("restart", start.interval > 0 ? 1 : 0);
   h.variables.push_back({"checkpoint", start.checkpoint});
   h.variables.push_back({"restart_file", start.solid_part});
+  number("coupling_timeout", s.coupling->timeout);
   number("diameter_min", p.diameter.lo);
   number("diameter_max", p.diameter.hi);
   number("density_min", p.density.lo);
