@@ -32,6 +32,7 @@ TraceComparison play_solid(Channel& channel, const Trace& trace, double timeout)
   for (const IntervalRecord& r : record) {
     StepHeader head = r.head;
     if (stop) head.flags |= kLast;
+    session.set(r.setting);
     const auto reply =
         speaks ? session.exchange(head, r.states, r.shapes) : session.exchange(head, {}, {});
     if (head.flags & kLast) return result;

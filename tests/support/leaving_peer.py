@@ -36,7 +36,7 @@ if stage == "agreed":
     leave(fluid)
 states = np.array([(4, (0.01, 0.04, 0), (0, 0, 0), (0, 0, 0))], wire.STATE)
 mass = 1250.0 * np.pi * 0.00125**2
-shapes = np.array([(4, 0.00125, mass, 0.5 * mass * 0.00125**2, 1)], wire.SHAPE)
+shapes = np.array([wire.ball(4, 0.00125, mass, 0.5 * mass * 0.00125**2)], wire.SHAPE)
 if stage == "states":
     fluid._receive = lambda kind: leave(fluid)  # in place of the loads
 while fluid.exchange(states, shapes) is not None:

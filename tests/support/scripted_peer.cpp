@@ -15,6 +15,9 @@
 ///   solid leave STAGE HOW   leaves at a stage (connected, hello, agreed, states, running, last,
 ///                      goodbye, refused, version) by MPI_Finalize only (finalize), by exit, or
 ///                      with its farewell
+///   solid heap         100 000 particles at one place
+///   solid step, box    another time step, another box from interval 3 on
+///   solid outside, jump, grow, dense, clump   a particle that cannot be, at interval 3
 ///   solid shapeless, twice             a particle without radius, or two of one id
 ///   solid swapped, noise, cut, longer  frames of another byte order, of another program, damaged
 #include <fmt/format.h>
@@ -65,8 +68,8 @@ void fluid(Channel& channel, const std::string& script, int intervals) {
       return;
     }
     for (const Particle& p : arrival.particles)
-      fmt::print(received, "state {} {} {:.17g} {:.17g} {:.17g} {:.17g}\n", k, p.state.id,
-                 p.state.x[0], p.state.v[0], p.state.v[1], p.state.omega[2]);
+      fmt::print(received, "state {} {} {:.17g} {:.17g} {:.17g} {:.17g} {}\n", k, p.state.id,
+                 p.state.x[0], p.state.v[0], p.state.v[1], p.state.omega[2], p.shape.epoch);
     if (arrival.head.flags & kLast) return;
     std::vector<Load> loads;
     for (const Particle& p : arrival.particles)
@@ -94,8 +97,8 @@ State at(std::int64_t id, double x, double y) {
 }
 
 /// A frame as only a broken partner sends it.
-Bytes damaged(const std::string& script) {
-  StateBatch batch{{0, 0.0, kContinue}, {at(4, 0.01, 0.04)}, {}, {}};
+Bytes damaged(const std::string& script, const Setting& setting) {
+  StateBatch batch{{0, 0.0, kContinue}, setting, {at(4, 0.01, 0.04)}, {}, {}};
   if (script == "twice") {
     batch.states.push_back(batch.states[0]);
     batch.shapes.push_back({4, 0.00125, 1.0, 1.0, 1});
@@ -106,6 +109,19 @@ Bytes damaged(const std::string& script) {
   if (script == "cut") frame.resize(frame.size() / 2);
   if (script == "longer") frame.resize(frame.size() + 8);
   return frame;
+}
+
+/// What a broken engine may make of what it sends.
+void spoil(const std::string& script, Setting now, SolidSession& session, State& state,
+           Shape& shape) {
+  if (script == "step") now.step *= 2.0;
+  if (script == "box") now.box_hi[1] *= 0.9;
+  session.set(now);
+  if (script == "outside") state.x[0] = 5.0;
+  if (script == "jump") state.x[1] -= 0.025;
+  if (script == "grow") shape.radius *= 2.0;
+  if (script == "dense") shape.mass *= 2.0;
+  if (script == "clump") shape.carrier = 1;
 }
 
 /// The hello of a solid for whatever scene the fluid has read: it repeats the fluid's own numbers.
@@ -127,11 +143,13 @@ Shape disc(std::int64_t id) {
 /// Plays the solid.
 void solid(Channel& channel, const std::string& script) {
   SolidSession session(channel, kTimeout);
-  session.agree(answer_to(session.fluid()));
+  const Hello hello = answer_to(session.fluid());
+  const Setting agreed{hello.step, hello.box_lo, hello.box_hi};
+  session.agree(hello);
   if (script == "silent") pause();
   for (const char* name : {"shapeless", "twice", "swapped", "noise", "cut", "longer"})
     if (script == name) {
-      channel.send(0, damaged(script), {kTimeout, ""});
+      channel.send(0, damaged(script, agreed), {kTimeout, ""});
       channel.receive(0, {kTimeout, "its complaint"});
     }
   bool stop = false;
@@ -141,8 +159,12 @@ void solid(Channel& channel, const std::string& script) {
     if (script == "insert" && k >= 8 && k < 20) states.push_back(at(2, 0.005, 0.02));
     if (script == "slow" && k % 20 == 3) usleep(300'000);
     if (script == "nan" && k == 3) states[0].v[1] = std::numeric_limits<double>::quiet_NaN();
+    if (script == "heap") states.resize(100000, at(4, 0.01, 0.04));
+    for (std::size_t i = 0; i < states.size(); ++i)
+      if (script == "heap") states[i].id = static_cast<std::int64_t>(i);
     std::vector<Shape> shapes;
     for (const State& s : states) shapes.push_back(disc(s.id));
+    if (k == 3 && !states.empty()) spoil(script, agreed, session, states[0], shapes[0]);
     const auto reply = session.exchange({k, 0.0, stop ? kLast : kContinue}, states, shapes);
     if (stop) return;
     for (const Load& l : reply.loads)

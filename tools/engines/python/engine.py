@@ -46,8 +46,9 @@ with wire.Solid("engine.py") as fluid:
         return f
 
     discs = fluid.restart() if fluid.interval else inserted(np.empty(0, wire.STATE))
-    fluid.agree(lo, hi, periodic, gravity, dt, substeps, len(discs))
-    shapes = lambda: np.array([(i, r, m, m * r**2 / 2, 1) for i in discs["id"]], wire.SHAPE)  # noqa: E731
+    sides = [wall for axis in (*walls, False) for wall in (axis, axis)]
+    fluid.agree(lo, hi, periodic, gravity, dt, substeps, len(discs), walls=sides)
+    shapes = lambda: np.array([wire.ball(i, r, m, m * r**2 / 2) for i in discs["id"]], wire.SHAPE)  # noqa: E731
     while (loads := fluid.exchange(discs, shapes())) is not None:
         x, v = discs["x"], discs["v"]
         f = forces(x, v, loads["force"])

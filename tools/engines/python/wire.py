@@ -21,18 +21,24 @@ import numpy as np
 from mpi4py import MPI
 
 STATE = np.dtype([("id", "i8"), ("x", "f8", 3), ("v", "f8", 3), ("omega", "f8", 3)])  # m, m/s, rad/s
-SHAPE = np.dtype([("id", "i8"), ("radius", "f8"), ("mass", "f8"), ("inertia", "f8"), ("type", "i8")])  # m, kg, kg m²
+SHAPE = np.dtype([("id", "i8"), ("radius", "f8"), ("mass", "f8"), ("inertia", "f8"), ("type", "i8"), ("epoch", "i8"),
+                  ("carrier", "i8"), ("volume", "f8")])  # m, kg, kg m², …, m³
 LOAD = np.dtype([("id", "i8"), ("force", "f8", 3), ("torque", "f8", 3)])
 
 MAGIC, VERSION, SOLID, LAST, STOP, CHECKPOINT = 0x4C425042, 4, 2, 1, 2, 4
 HELLO, ANSWER, STATES, LOADS, GOODBYE, FAULT, FAREWELL = range(1, 8)
 FRAME_TAG, URGENT_TAG, ROLE_TAG, LEADER_TAG = 7001, 7002, 7003, 7004
-# The hello field by field: s text, ? optional, other letters as in Python's struct.
+# The hello field by field: s text, l list of texts, ? optional, other letters as in Python's struct.
 FIELDS = [("version", "I"), ("role", "I"), ("program", "s"), ("program_version", "s"), ("dimension", "I"),
           ("box_lo", "3d"), ("box_hi", "3d"), ("periodic", "3B"), ("depth", "d"), ("units", "s"), ("gravity", "3d"),
           ("buoyancy", "I"), ("step", "d"), ("fluid_steps", "I"), ("solid_steps", "I"), ("first_interval", "q"),
           ("schedule", "I"), ("features", "Q"), ("particles", "?q"), ("radius", "?2d"), ("density", "?2d"),
-          ("subdomain_lo", "3d"), ("subdomain_hi", "3d"), ("reach", "d")]
+          ("subdomain_lo", "3d"), ("subdomain_hi", "3d"), ("reach", "d"), ("sides", "?6B"), ("bodies", "l")]
+
+
+def ball(number, radius, mass, inertia, kind=1, epoch=0):
+    """A SHAPE. Another epoch says that the number has passed to another particle, which starts anew."""
+    return np.array((number, radius, mass, inertia, kind, epoch, -1, 0.0), SHAPE)  # its own carrier, a ball's volume
 
 
 class Stop(Exception):
@@ -47,7 +53,7 @@ class Solid:
     """A session with the fluid. `interval` is the number of the next states."""
 
     def __init__(self, program):
-        self.program, self.interval, self.known, self.flags, self.timeout, self.left = program, 0, set(), 0, 60.0, False
+        self.program, self.interval, self.known, self.flags, self.timeout, self.left = program, 0, {}, 0, 60.0, False
 
     # ---- what an engine calls ----------------------------------------------------------------------------------
 
@@ -71,12 +77,16 @@ class Solid:
         except ValueError as error:
             raise Stop(f"{self.text('restart_file')} is no checkpoint of this engine: {error}", 2) from error
 
-    def agree(self, box_lo, box_hi, periodic, gravity, step, substeps, particles=None, checkpoints=True):
-        """Both sides compare what they are; a difference ends both. SI units, three components each."""
+    def agree(self, box_lo, box_hi, periodic, gravity, step, substeps, particles=None, checkpoints=True, walls=None):
+        """Both sides compare what they are; a difference ends both. SI units, three components each.
+        walls: for x low, x high, y low … z high, whether a wall stops particles there; None: it is not said."""
         self.duration = step * substeps  # of an interval [s]
         mine = dict(self.fluid, role=SOLID, program=self.program, program_version="1", box_lo=list(box_lo),
                     box_hi=list(box_hi), periodic=list(periodic), gravity=list(gravity), step=step, fluid_steps=1,
-                    solid_steps=substeps, features=int(checkpoints), schedule=0, particles=particles, radius=None, density=None)
+                    solid_steps=substeps, features=int(checkpoints), schedule=0, particles=particles,
+                    radius=None, density=None,
+                    sides=None if walls is None else [int(bool(w)) for w in walls], bodies=[])
+        self.setting = struct.pack("<7d", step, *box_lo, *box_hi)
         self._send(HELLO, encode_hello(mine))
         reasons = [f"box {axis}: fluid {self.fluid[end][a]} m, solid {mine[end][a]} m"
                    for end in ("box_lo", "box_hi") for a, axis in enumerate("xy")
@@ -90,13 +100,14 @@ class Solid:
 
     def exchange(self, states, shapes):
         """Sends STATE and SHAPE arrays [particle]; returns LOAD [particle] in their order, or None at the end."""
-        new = np.array([i not in self.known for i in shapes["id"].tolist()], bool)
-        self.known = set(shapes["id"].tolist())
+        now = [(shape["id"].item(), shape.tobytes()) for shape in shapes]
+        new = np.array([self.known.get(number) != shape for number, shape in now], bool)
+        self.known = dict(now)
         if self.flags & CHECKPOINT:
             self._keep(states)
         head = struct.pack("<qdI", self.interval, self.interval * self.duration, self.flags)
-        self._send(STATES, head + struct.pack("<Q", len(states)) + states.tobytes() + struct.pack("<Q", new.sum())
-                   + shapes[new].tobytes() + b"\0")  # no bonds
+        self._send(STATES, head + self.setting + struct.pack("<Q", len(states)) + states.tobytes()
+                   + struct.pack("<Q", new.sum()) + shapes[new].tobytes() + b"\0")  # no bonds
         if self.flags & LAST:
             return None
         reply = Reader(self._receive(LOADS))
@@ -229,6 +240,9 @@ class Reader:
         self.at += size
         return self.data[self.at - size:self.at].decode()
 
+    def texts(self):
+        return [self.text() for _ in range(self.take("Q"))]
+
     def records(self, kind):
         count = self.take("Q")
         self.at += count * kind.itemsize
@@ -245,7 +259,12 @@ def decode_hello(data):
         raise Stop(f"protocol version: the fluid speaks {version}, this engine {VERSION}", 2)
     for name, form in FIELDS:
         optional = form.startswith("?")
-        hello[name] = r.text() if form == "s" else None if optional and not r.take("B") else r.take(form.strip("?"))
+        if form == "s":
+            hello[name] = r.text()
+        elif form == "l":
+            hello[name] = r.texts()
+        else:
+            hello[name] = None if optional and not r.take("B") else r.take(form.strip("?"))
     hello["variables"] = {r.text(): r.text() for _ in range(r.take("Q"))}
     return hello
 
@@ -259,6 +278,8 @@ def encode_hello(hello):
             form = form[1:] if value is not None else ""
         if form == "s":
             out += encode_text(value)
+        elif form == "l":
+            out += struct.pack("<Q", len(value)) + b"".join(map(encode_text, value))
         elif form:
             out += struct.pack("<" + form, *(value if isinstance(value, (list, tuple)) else [value]))
     return out + struct.pack("<Q", 0)  # no variables

@@ -100,7 +100,7 @@ class Discs {
 
   /// A checkpoint is a frame of states, as it would go to the fluid.
   Bytes checkpoint(const StepHeader& head) const {
-    return encode(StateBatch{head, states, shapes, {}});
+    return encode(StateBatch{head, {}, states, shapes, {}});
   }
   /// Every path of the discs is decided by places and velocities: a restart goes on to the bit.
   void read(const std::string& file) {
@@ -221,6 +221,9 @@ void run(Channel& channel) {
   hello.particles = static_cast<std::int64_t>(discs.states.size());
   hello.first_interval = fluid.first_interval;
   hello.features = kCheckpoints;
+  hello.sides.emplace();
+  for (int k = 0; k < 2; ++k)
+    if (discs.box().walls[k]) (*hello.sides)[2 * k] = (*hello.sides)[2 * k + 1] = SideWall::Whole;
   session.agree(hello);
   SolidParts parts = SolidParts::of(fluid);
   StepHeader head{fluid.first_interval, 0.0, kContinue};
