@@ -30,7 +30,7 @@ struct Arrival {
   StepHeader head;
   std::vector<Particle> particles;
   std::optional<std::string> goodbye;  ///< the solid left in good order; no particles then
-  std::optional<BondReport> bonds;     ///< summed over the solid's ranks
+  std::optional<SolidReport> report;   ///< summed over the solid's ranks
 };
 
 class FluidSession {
@@ -55,7 +55,7 @@ class FluidSession {
  private:
   void learn_shapes(const StateBatch& batch);
   void merge(const std::vector<StateBatch>& batches);
-  void merge_bonds(const std::vector<StateBatch>& batches);
+  void merge_reports(const std::vector<StateBatch>& batches);
   bool merge_as_before(const std::vector<StateBatch>& batches);
   void expect_finite_states() const;
 
@@ -90,15 +90,15 @@ class SolidSession {
   };
   /// Sends this rank's states.
   /// @param states, shapes  one each a particle, same order
-  /// @param bonds  what a solid with bonds has to say of them
+  /// @param report  what this rank has to say of itself
   void send(const StepHeader& head, std::span<const State> states, std::span<const Shape> shapes,
-            const std::optional<BondReport>& bonds = {});
+            const std::optional<SolidReport>& report = {});
   /// Waits for the loads of the states sent last, summed over fluid ranks in rank order; a particle
   /// that touches no fluid has none.
   Reply collect();
   /// Both, one after the other, as the serial schedule has it. With kLast nothing is waited for.
   Reply exchange(const StepHeader& head, std::span<const State> states,
-                 std::span<const Shape> shapes, const std::optional<BondReport>& bonds = {});
+                 std::span<const Shape> shapes, const std::optional<SolidReport>& report = {});
 
   /// Leaves in good order instead of the next states.
   void goodbye(const std::string& reason);
@@ -107,7 +107,7 @@ class SolidSession {
 
  private:
   void send_states(int rank, const StepHeader& head, std::span<const State> states,
-                   std::span<const Shape> shapes, const std::optional<BondReport>& bonds);
+                   std::span<const Shape> shapes, const std::optional<SolidReport>& report);
   std::uint32_t add_loads(int rank);
 
   Channel* channel_;

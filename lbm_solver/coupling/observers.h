@@ -73,9 +73,10 @@ class Observers {
  private:
   double time_of(std::int64_t state) const { return static_cast<double>(state) * plan_.interval(); }
   void guard(std::int64_t state, Fluid& fluid, const Particles* particles);
+  Particles::Everything shown(const Particles& particles) const;
   void add_particles(const Particles& particles, FieldFrame& frame) const;
   void add_bonds(const std::vector<protocol::Particle>& particles,
-                 const protocol::BondReport& bonds, FieldFrame& frame) const;
+                 const std::vector<protocol::Bond>& bonds, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
   void write_points(double time, Fluid& fluid);
   void write_particles(double time, const Particles& particles);

@@ -9,7 +9,8 @@ ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decompo
   const bool flat = scene.box.dimension == 2;
   if (ranks.rank() == 0)
     table_.emplace(folder + "/obstacles.csv",
-                   flat ? "time,obstacle,fx,fy,torque" : "time,obstacle,fx,fy,fz,tx,ty,tz",
+                   flat ? "time [s],obstacle [1],fx [N],fy [N],torque [N m]"
+                        : "time [s],obstacle [1],fx [N],fy [N],fz [N],tx [N m],ty [N m],tz [N m]",
                    keep_until);
   int lines = 0;
   for (const ObstacleScene& o : scene.obstacles) {

@@ -148,6 +148,7 @@ class CoupledRun {
     summary.versions[partner_.program] = partner_.program_version;
     summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
     summary.waiting = clock_.parts().at("waiting");
+    if (particles_.report()) summary.solid = *particles_.report();
     if (ranks_.rank() == 0) write_summary(options_.out, summary);
     return summary;
   }
@@ -169,7 +170,7 @@ class CoupledRun {
       else
         stands_at_.reset();
       particles_.arrive(arrival.particles, plan_.interval());
-      particles_.tell_bonds(arrival.bonds);
+      particles_.tell(arrival.report);
       place(0);
       observers_.at_state(interval, fluid_, &particles_, last);
       clock_.charge("output");

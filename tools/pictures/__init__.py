@@ -18,9 +18,11 @@ UNITS = {1.0: "m", 1e-2: "cm", 1e-3: "mm"}
 
 
 def read_table(path):
-    """Columns of a CSV file of ours: dict name -> array."""
-    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
-    return {name: rows[name] for name in rows.dtype.names}
+    """Columns of a CSV file of ours, whose first line is "name [unit],…": dict name -> array. An empty field is nan."""
+    head, *lines = pathlib.Path(path).read_text().splitlines()
+    names = [column.split(" [")[0] for column in head.split(",")]
+    rows = np.genfromtxt(lines, delimiter=",") if lines else []
+    return dict(zip(names, np.reshape(rows, (-1, len(names))).T))
 
 
 def studies(run):
@@ -49,7 +51,8 @@ class Run:
             return [(f[name].attrs["time"], name) for name in sorted(f)]
 
     def frame(self, name):
-        """One frame: velocity [ny][nx][3], pressure [ny][nx], particles [n][8], SI units."""
+        """One frame: velocity [ny][nx][3], pressure [ny][nx], particles [n][8], … in SI units; each array of the file
+        names its unit and its columns as attributes."""
         with h5py.File(self.folder / "fields.h5") as f:
             return {key: f[name][key][...] for key in f[name]}
 
@@ -80,9 +83,9 @@ def quantity(name, value, unit):
 
 
 def write_table(path, columns):
-    """A CSV file of columns of equal length: dict name -> array."""
+    """A CSV file of columns of equal length: dict "name [unit]" -> array."""
     np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns),
-               comments="", fmt="%.8g")
+               comments="", fmt="%.8g", encoding="utf-8")
 
 
 def draw_speed(axes, run, name, vmax, length_unit=1e-2):
@@ -155,14 +158,12 @@ def draw_errors(axes, run, others, error, label):
 
 
 def draw_bonds(axes, frame, length_unit=1e-2):
-    """Lines between bonded discs: intact green, broken by tension red, by shear blue."""
+    """Lines between bonded discs: intact green, broken by tension red, by shear blue (until the two have parted)."""
     if "bond_state" not in frame:
         return
     ends = frame["bond_ends"].reshape(-1, 2, 2) / length_unit
-    near = np.hypot(*(ends[:, 0] - ends[:, 1]).T) < 0.01 / length_unit
     for state, color, width in ((0, "tab:green", 0.8), (1, "tab:red", 1.4), (2, "tab:blue", 1.4)):
-        chosen = near & (frame["bond_state"] == state)
-        axes.add_collection(LineCollection(ends[chosen], colors=color, linewidths=width))
+        axes.add_collection(LineCollection(ends[frame["bond_state"] == state], colors=color, linewidths=width))
 
 
 def animate(run, name, draw, size, seconds=5.0):
