@@ -33,16 +33,11 @@ double wrapped(double x, double lo, double length) {
   return inside < lo + length ? inside : lo;  // rounding
 }
 
-/// Grains and bonds in a progress line, as far as there is anything to tell.
-std::string solid_text(const protocol::SolidReport& report) {
-  std::string text;
-  if (report.grains_left > 0) text += fmt::format(", {} grains left", report.grains_left);
-  if (!report.bonds) return text;
-  const auto& [intact, tension, shear, left, lost] = *report.bonds;
-  text += fmt::format(", bonds {} (broken by tension {}, by shear {}", intact, tension, shear);
-  if (left > 0) text += fmt::format("; left with grains {}", left);
-  if (lost > 0) text += fmt::format("; lost {}", lost);
-  return text + ")";
+/// What a progress line says of grains and bonds.
+std::string solid_text(const Particles* particles) {
+  const std::string text =
+      particles && particles->report() ? describe(*particles->report()) : std::string();
+  return text.empty() ? text : ", " + text;
 }
 
 }  // namespace
@@ -73,7 +68,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
   if (scene.output.fields_every > 0.0)
     field_times_.emplace(scene.output.fields_every, plan.interval());
   const bool flat = scene.box.dimension == 2;
-  if (!obstacle_bodies(scene, plan).empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
+  if (!scene.obstacles.empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
   if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);
   if (ranks.rank() != 0) return;
   if (scene.coupling) probes_.emplace(folder, scene.box.dimension, keep);
@@ -269,7 +264,7 @@ void Observers::report_progress(std::int64_t state, const Particles* particles) 
                             state, time_of(intervals_done_), 100.0 * done, updates / wall * 1e-6,
                             duration_text(left), last_speed_ * std::numbers::sqrt3,
                             last_speed_ * plan_.units.velocity()) +
-                    (particles && particles->report() ? solid_text(*particles->report()) : ""));
+                    solid_text(particles));
 }
 
 Summary Observers::summary(double wall_seconds) const {

@@ -63,8 +63,10 @@ class Observers {
   /// writes the particles' rows of this one.
   /// @throws NumericsError
   void after_interval(std::int64_t state, Fluid& fluid, const Particles* particles);
-  /// After each fluid step of a scene with obstacles: loads in the order of obstacle_bodies.
-  void add_loads(std::span<const BodyLoad> loads) { obstacles_->add(loads); }
+  /// After each fluid step: loads in the order of obstacle_bodies.
+  void add_loads(const Fluid& fluid, std::span<const BodyLoad> loads) {
+    if (obstacles_) obstacles_->add(fluid, loads);
+  }
   /// A fluid alone whose velocity no longer changes (run.steady_below).
   bool steady() const { return steady_ && steady_->steady(); }
 

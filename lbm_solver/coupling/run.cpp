@@ -85,6 +85,7 @@ RunStart start_of(const RunOptions& options, const Plan& plan, const State& stat
   const auto path = [&](const std::string& name) {
     return std::filesystem::absolute(options.out + "/" + name).lexically_normal().string();
   };
+  start.out = options.out;
   start.checkpoint = path("checkpoint");
   if (options.restart.empty()) return start;
   start.interval = static_cast<std::int64_t>(state.at("interval")[0]);
@@ -207,7 +208,7 @@ class CoupledRun {
       lubrication_.add(bodies_, masses_, plan_.domain, ranks_.cells(), loads);
     }
     const std::span<const BodyLoad> all(loads);
-    if (obstacles_ > 0) observers_.add_loads(all.first(obstacles_));
+    observers_.add_loads(fluid_, all.first(obstacles_));
     particles_.add(all.subspan(obstacles_));
     clock_.charge("loads");
   }
@@ -312,7 +313,6 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     state = load(checkpoint, plan, ranks);
     fluid.restore(state);
   }
-  const bool loads = !obstacle_bodies(scene, plan).empty();
   Observers observers(scene, plan, ranks, options.out, log, fluid.steps());
   if (!options.restart.empty()) {
     observers.restore(state["observers"]);
@@ -340,7 +340,7 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     if (every > 0) next = std::min(next, (step / every + 1) * every);
     fluid.advance(next - step);
     clock.charge("sweep");
-    if (loads) observers.add_loads(fluid.loads());
+    if (!scene.obstacles.empty()) observers.add_loads(fluid, fluid.loads());
     clock.charge("loads");
     observers.after_interval(next - 1, fluid, nullptr);
     clock.charge("output");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/summary.h"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -73,6 +75,18 @@ Json units(const Json& json) {
 }
 
 }  // namespace
+
+std::string describe(const protocol::SolidReport& report) {
+  std::string text;
+  if (report.grains_left > 0) text = fmt::format("{} grains left", report.grains_left);
+  if (!report.bonds) return text;
+  const auto& [intact, tension, shear, left, lost] = *report.bonds;
+  text += fmt::format("{}bonds {} (broken by tension {}, by shear {}", text.empty() ? "" : ", ",
+                      intact, tension, shear);
+  if (left > 0) text += fmt::format("; left with grains {}", left);
+  if (lost > 0) text += fmt::format("; lost {}", lost);
+  return text + ")";
+}
 
 std::string unit_of(const std::string& name) {
   return kUnits.at(name);

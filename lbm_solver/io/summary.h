@@ -32,6 +32,9 @@ struct Summary {
   std::optional<protocol::SolidReport> solid;
 };
 
+/// Grains that have left and bonds, in words; empty where there is nothing to tell.
+std::string describe(const protocol::SolidReport& report);
+
 /// Unit of a number of the summary or of its parameters; "1" for one without.
 /// @throws std::out_of_range  the table in summary.cpp lacks it
 std::string unit_of(const std::string& name);

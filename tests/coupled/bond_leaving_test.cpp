@@ -191,25 +191,68 @@ fix flat all enforce2d
 run ${solid_steps_total}
 )";
 
-class BondedPairLeaves : public testing::TestWithParam<int> {};
+/// Runs a scene and a script, and keeps the folder.
+class BondedDiscs : public testing::TestWithParam<int> {
+ protected:
+  JobResult couple(const std::string& scene, const std::string& script, int solid_ranks = 1) {
+    folder_.write("scene.toml", scene);
+    folder_.write("in.liggghts", replaced(script, "${scene_folder}/../common",
+                                          std::string(BPLBM_SOURCE_DIR) + "/cases/common"));
+    return run(mpirun({kLbm + " --progress tenths"}, {kLiggghts + " -screen none", solid_ranks}),
+               folder_.path(), 60.0);
+  }
+  std::string output(const std::string& name) const {
+    return read_file(folder_.path() + "/out/" + name);
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+using BondedPairLeaves = BondedDiscs;
 
 TEST_P(BondedPairLeaves, AndTheRunGoesOn) {
-  const TemporaryFolder folder;
-  const std::string cases = std::string(BPLBM_SOURCE_DIR) + "/cases/common";
-  folder.write("scene.toml", kScene);
-  folder.write("in.liggghts", replaced(kScript, "${scene_folder}/../common", cases));
-  const auto job =
-      run(mpirun({kLbm + " --progress tenths"}, {kLiggghts + " -screen none", GetParam()}),
-          folder.path(), 60.0);
+  const auto job = couple(kScene, kScript, GetParam());
   EXPECT_EQ(job.exit_code, 0) << job.output;
-  expect_in(job.output,
-            "2 grains left, bonds 0 (broken by tension 0, by shear 0; left with grains 1)");
-  const auto summary = nlohmann::json::parse(read_file(folder.path() + "/out/summary.json"));
+  const std::string counts =
+      "2 grains left, bonds 0 (broken by tension 0, by shear 0; left with grains 1)";
+  expect_in(job.output, "m/s, " + counts);
+  expect_in(job.output, "solid        " + counts);
+  const auto summary = nlohmann::json::parse(output("summary.json"));
   EXPECT_EQ(summary["ending"], "complete");
   EXPECT_EQ(summary["grains"]["left"], 2);
   EXPECT_EQ(summary["bonds"],
             nlohmann::json::parse(R"({"intact":0,"tension":0,"shear":0,"left":1,"lost":0})"));
 }
 INSTANTIATE_TEST_SUITE_P(SolidRanks, BondedPairLeaves, testing::Values(1, 2));
+
+// One bond breaks before the fluid comes, one after: the table has the fluid's time for both.
+TEST_F(BondedDiscs, BreakAtTheTimeOfTheFluid) {
+  const std::string scene = replaced(replaced(kScene, "bond_strength = 1.0", "bond_strength = 0.1"),
+                                     "end_time = 0.2", "end_time = 0.02");
+  std::string script = replaced(kScript, "create_atoms 1 single 0.030 0.01 0.0 units box\n",
+                                "create_atoms 1 single 0.005 0.005 0.0 units box\n"
+                                "create_atoms 1 single 0.007 0.005 0.0 units box\n");
+  script = replaced(script, "create_atoms 1 single 0.032 0.01 0.0 units box\n",
+                    "create_atoms 1 single 0.005 0.015 0.0 units box\n"
+                    "create_atoms 1 single 0.007 0.015 0.0 units box\n");
+  script = replaced(script, "fix move all nve/sphere\n",
+                    "group pulled id 2\ngroup others id 1 3 4\n"
+                    "fix pull pulled move linear 0.1 0 0\nfix hold others move linear 0 0 0\n");
+  script = replaced(script, "fix fluid",
+                    "run 100\nunfix pull\nunfix hold\nset atom 2 vx 0\nset atom 4 vx 0.15\n"
+                    "fix move all nve/sphere\nfix fluid");
+  const auto job = couple(scene, script);
+  ASSERT_EQ(job.exit_code, 0) << job.output;
+  const auto summary = nlohmann::json::parse(output("summary.json"));
+  const double step =
+      summary["parameters"]["interval"].get<double>() / summary["substeps"].get<double>();
+  const auto breaks = rows(output("breaks.csv"));
+  ASSERT_EQ(breaks.size(), 2U) << output("breaks.csv") << job.output;
+  for (const auto& row : breaks)
+    EXPECT_NEAR(std::stod(row[1]), step * (std::stod(row[0]) - 100.0), 1e-12);
+  EXPECT_LT(std::stod(breaks[0][1]), 0.0);
+  EXPECT_GT(std::stod(breaks[1][1]), 0.0);
+  EXPECT_EQ(output("breaks.csv").substr(0, 33), "step [1],time [s],id1 [1],id2 [1]");
+}
 
 }  // namespace
