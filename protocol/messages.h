@@ -11,7 +11,7 @@
 
 namespace protocol {
 
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 
 using Vec3 = std::array<double, 3>;
 

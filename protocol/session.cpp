@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "protocol/agreement.h"
+#include "protocol/numbers.h"
 #include "protocol/routing.h"
 
 namespace protocol {
@@ -54,6 +55,16 @@ void expect_finite(const Record& record, const Vec3& value, const char* what,
     throw BadMessage(fmt::format("particle {}: {} is ({}, {}, {}) at interval {}: not finite",
                                  record.id, what, value[0], value[1], value[2], interval),
                      kNumerics);
+}
+
+/// What a fluid's scene says of the longest wait.
+double timeout_of(const Hello& fluid, double fallback) {
+  for (const Variable& v : fluid.variables)
+    if (v.name == "coupling_timeout") {
+      const auto seconds = to_number<double>(v.value);
+      if (seconds && *seconds > 0.0) return *seconds;
+    }
+  return fallback;
 }
 
 void expect_interval(const StepHeader& head, std::int64_t expected, const Channel& channel,
@@ -233,8 +244,10 @@ SolidSession::SolidSession(Channel& channel, double timeout)
       told_(channel.remote_size()),
       sent_(channel.remote_size()) {
   const Stopwatch watch(waited_);
-  for (int r = 0; r < channel_->remote_size(); ++r)
+  for (int r = 0; r < channel_->remote_size(); ++r) {
     fluid_.push_back(decode<Hello>(channel_->receive(r, {timeout_, "its hello"})));
+    timeout_ = timeout_of(fluid_.back(), timeout_);
+  }
 }
 
 void SolidSession::agree(const Hello& hello) {

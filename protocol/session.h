@@ -72,11 +72,13 @@ class FluidSession {
 class SolidSession {
  public:
   /// Waits for the hello of every fluid rank. `channel` must outlive the session.
+  /// @param timeout  longest wait [s]; the fluid's `coupling_timeout` where it offers one
   SolidSession(Channel& channel, double timeout);
 
   /// Hello of fluid rank 0; its variables are for the script.
   const Hello& fluid() const { return fluid_.front(); }
 
+  double timeout() const { return timeout_; }
   void set_timeout(double seconds) { timeout_ = seconds; }
   /// Goes on over another channel to the same partner, e.g. a recording one.
   void use(Channel& channel) { channel_ = &channel; }

@@ -177,7 +177,9 @@ class RecordingChannel final : public Channel {
     }
     inner_->raise(fault);
   }
-  void await_farewell(double seconds) noexcept override { inner_->await_farewell(seconds); }
+  Ending await_farewell(double seconds) noexcept override {
+    return inner_->await_farewell(seconds);
+  }
   void say_farewell() noexcept override { inner_->say_farewell(); }
 
  private:
@@ -223,7 +225,7 @@ class ReplayChannel final : public Channel {
     return frame;
   }
   void raise(const Fault&) noexcept override {}
-  void await_farewell(double) noexcept override {}
+  Ending await_farewell(double) noexcept override { return {}; }
   void say_farewell() noexcept override {}
 
  private:

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, quantity, read_table, result, studies
+from bplbm import Run, quantity, read_table, result, studies
 
 FLOOR = 0.004         # m, of the scene
 # The bed lifts where its effective stress vanishes. While it rests, the floor's load falls in a straight line with the

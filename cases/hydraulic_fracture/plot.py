@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, animate, draw_bonds, draw_speed, quantity, result, studies, write_table
+from bplbm import Run, animate, draw_bonds, draw_speed, quantity, result, studies, write_table
 
 INLET = np.array([0.0, 0.05])  # m
 

@@ -70,6 +70,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   h.variables.push_back({"out_folder", start.out});
   h.variables.push_back({"checkpoint", start.checkpoint});
   h.variables.push_back({"restart_file", start.solid_part});
+  number("coupling_timeout", s.coupling->timeout);
   number("diameter_min", p.diameter.lo);
   number("diameter_max", p.diameter.hi);
   number("density_min", p.density.lo);

@@ -20,6 +20,7 @@
 #include "protocol/numbers.h"
 #include "protocol/program.h"
 #include "protocol/trace.h"
+#include "protocol/watch.h"
 
 namespace dem {
 
@@ -44,7 +45,10 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
   atom->add_callback(0);  // held loads follow their particles …
   atom->add_callback(1);  // … and go into restart files
   for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
-  Coupling::instance().session->set_timeout(timeout_);
+  if (timeout_) {
+    Coupling::instance().session->set_timeout(*timeout_);
+    protocol::limit_waits(*timeout_);
+  }
   if (!record_.empty()) begin_recording();
 }
 
@@ -71,7 +75,7 @@ void FixLbmCouple::parse(int narg, char** arg) {
         fail("'every " + value + "': give a whole number of at least 1, e.g. ${substeps}" + usage);
     } else if (key == "timeout") {
       timeout_ = protocol::to_number<double>(value).value_or(0.0);
-      if (!(timeout_ > 0.0))
+      if (!(*timeout_ > 0.0))
         fail("'timeout " + value + "': give a positive number of seconds" + usage);
     } else if (key == "record") {
       record_ = value;

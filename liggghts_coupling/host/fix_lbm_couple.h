@@ -70,7 +70,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   [[noreturn]] void fail(const std::string& text) const;
 
   int substeps_ = 0;
-  double timeout_ = 300.0;
+  std::optional<double> timeout_;  ///< [s]; else the fluid's
   std::string record_;
   double** held_ = nullptr;  ///< [nmax][6] force [N] and torque [N m] of the current interval
   int held_still_ = 0;       ///< groups whose forces fix freeze or setforce sets

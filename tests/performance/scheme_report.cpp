@@ -71,8 +71,7 @@ Fluid make(const Row& row, const Domain& domain, double tau, const Vec3& force) 
                        .force_y = force.y()},
                       row.weight};
   Fluid fluid(domain, choice);
-  if (!row.scheme.empty())
-    fluid.use(make_scheme(row.scheme, domain, fluid.lattice(), {0.5 * force}));
+  if (!row.scheme.empty()) fluid.use(make_scheme(row.scheme, domain, fluid.lattice()));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;

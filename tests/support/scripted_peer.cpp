@@ -6,11 +6,15 @@
 ///   fluid nan          answers a load that is not finite
 ///   fluid fewer        answers fewer loads than there are particles
 ///   fluid silent       says hello and nothing more
+///   fluid leave        leaves before its hello
 ///   solid insert       an empty box, late insertion, removal, return, then the end
 ///   solid nan          a state that is not finite
 ///   solid silent       agrees and sends nothing
 ///   solid slow         answers late, but answers
 ///   solid die          agrees, sends one state and is killed
+///   solid leave STAGE HOW   leaves at a stage (connected, hello, agreed, states, running, last,
+///                      goodbye, refused, version) by MPI_Finalize only (finalize), by exit, or
+///                      with its farewell
 ///   solid shapeless, twice             a particle without radius, or two of one id
 ///   solid swapped, noise, cut, longer  frames of another byte order, of another program, damaged
 #include <fmt/format.h>
@@ -50,6 +54,7 @@ Hello box_hello() {
 }
 
 void fluid(Channel& channel, const std::string& script, int intervals) {
+  if (script == "leave") return;
   FluidSession session(channel, box_hello(), kTimeout);
   if (script == "silent") pause();
   session.agree();
@@ -103,24 +108,32 @@ Bytes damaged(const std::string& script) {
   return frame;
 }
 
-/// Plays the solid of whatever scene the fluid has read: it repeats the fluid's own numbers.
-void solid(Channel& channel, const std::string& script) {
-  SolidSession session(channel, kTimeout);
-  Hello hello = session.fluid();
+/// The hello of a solid for whatever scene the fluid has read: it repeats the fluid's own numbers.
+Hello answer_to(Hello hello) {
   hello.role = Role::Solid;
   hello.program = "scripted_peer";
   hello.step = hello.step * hello.fluid_steps / hello.solid_steps;
   hello.particles = 0;
   hello.radius.reset();
   hello.density.reset();
-  session.agree(hello);
+  return hello;
+}
+
+Shape disc(std::int64_t id) {
+  const double r = 0.00125, mass = 1250.0 * std::numbers::pi * r * r;
+  return {id, r, mass, 0.5 * mass * r * r, 1};
+}
+
+/// Plays the solid.
+void solid(Channel& channel, const std::string& script) {
+  SolidSession session(channel, kTimeout);
+  session.agree(answer_to(session.fluid()));
   if (script == "silent") pause();
   for (const char* name : {"shapeless", "twice", "swapped", "noise", "cut", "longer"})
     if (script == name) {
       channel.send(0, damaged(script), {kTimeout, ""});
       channel.receive(0, {kTimeout, "its complaint"});
     }
-  const double r = 0.00125, mass = 1250.0 * std::numbers::pi * r * r;
   bool stop = false;
   for (std::int64_t k = 0;; ++k) {
     std::vector<State> states;
@@ -129,7 +142,7 @@ void solid(Channel& channel, const std::string& script) {
     if (script == "slow" && k % 20 == 3) usleep(300'000);
     if (script == "nan" && k == 3) states[0].v[1] = std::numeric_limits<double>::quiet_NaN();
     std::vector<Shape> shapes;
-    for (const State& s : states) shapes.push_back({s.id, r, mass, 0.5 * mass * r * r, 1});
+    for (const State& s : states) shapes.push_back(disc(s.id));
     const auto reply = session.exchange({k, 0.0, stop ? kLast : kContinue}, states, shapes);
     if (stop) return;
     for (const Load& l : reply.loads)
@@ -139,12 +152,58 @@ void solid(Channel& channel, const std::string& script) {
   }
 }
 
+/// The peer has come to a stage at which it is to leave.
+struct Here {};
+
+/// Plays the solid up to a stage, and no further.
+void play_to(Channel& channel, const std::string& stage) {
+  if (stage == "connected") throw Here();
+  SolidSession session(channel, kTimeout);
+  Hello hello = answer_to(session.fluid());
+  if (stage == "refused") hello.gravity[1] *= 2.0;
+  if (stage == "version") hello.version = 3;
+  if (stage == "hello" || stage == "version") {
+    for (int r = 0; r < channel.remote_size(); ++r)
+      channel.send(r, encode(hello), {kTimeout, "it to take our hello"});
+    throw Here();
+  }
+  try {
+    session.agree(hello);
+  } catch (const Refusal&) {
+    throw Here();
+  }
+  if (stage == "agreed") throw Here();
+  const std::vector<State> states{at(4, 0.01, 0.04)};
+  const std::vector<Shape> shapes{disc(4)};
+  std::uint32_t flags = kContinue;
+  for (std::int64_t k = 0;; ++k) {
+    if (k == 3 && stage == "goodbye") session.goodbye("has seen enough");
+    if (k == 3 && (stage == "goodbye" || stage == "running")) throw Here();
+    session.send({k, 0.0, flags}, states, shapes);
+    if (stage == "states" || flags == kLast) throw Here();
+    if (session.collect().flags & kStop) flags = kLast;
+  }
+}
+
+/// @return only where it is to leave with its farewell
+void leave(Channel& channel, const std::string& stage, const std::string& how) {
+  try {
+    play_to(channel, stage);
+  } catch (const Here&) {
+  }
+  if (how == "exit") std::_Exit(0);
+  if (how != "finalize") return;
+  PMPI_Finalize();
+  std::_Exit(0);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string side = argc > 1 ? argv[1] : "", script = argc > 2 ? argv[2] : "";
   MPI_Init(&argc, &argv);
   catch_signals();
+  if (script == "leave") setenv("BPLBM_WATCH", "0", 1);  // as a program that is not ours
   const Role role = side == "fluid" ? Role::Fluid : Role::Solid;
   received = std::fopen("peer.txt", "w");
   std::setvbuf(received, nullptr, _IOLBF, 0);
@@ -157,12 +216,9 @@ int main(int argc, char** argv) {
     if (role == Role::Fluid)
       fluid(*channel, script, argc > 3 ? std::atoi(argv[3]) : 3);
     else
-      solid(*channel, script);
+      script == "leave" ? leave(*channel, argv[3], argv[4]) : solid(*channel, script);
   } catch (const std::exception& e) {
     code = leave_after(e, "scripted_peer", channel.get());
   }
-  channel.reset();
-  disconnect(world);
-  MPI_Finalize();
-  return code;
+  return finish(code, "scripted_peer", channel, world.local);
 }

@@ -317,4 +317,17 @@ TEST(Session, ASilentPartnerIsNamedWithTheIntervalWaitedFor) {
   }
 }
 
+TEST(TimeOut, OfTheSolidIsThatOfTheFluidsScene) {
+  MemoryLink link = make_memory_link(1, 1);
+  Hello hello = test::sample_hello(Role::Fluid);
+  const auto offered = [&](const char* text) {
+    hello.variables = {{"coupling_timeout", text}};
+    const FluidSession fluid(*link.fluid[0], hello, kTimeout);
+    return SolidSession(*link.solid[0], kTimeout).timeout();
+  };
+  EXPECT_EQ(offered("7.5"), 7.5);
+  EXPECT_EQ(offered("soon"), kTimeout);  // an engine goes on with its own
+  EXPECT_EQ(offered("-1"), kTimeout);
+}
+
 }  // namespace

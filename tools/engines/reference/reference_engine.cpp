@@ -18,6 +18,7 @@
 #include "protocol/program.h"
 #include "protocol/session.h"
 #include "protocol/solid_parts.h"
+#include "protocol/watch.h"
 
 namespace {
 
@@ -200,6 +201,7 @@ class Discs {
 
 void run(Channel& channel) {
   SolidSession session(channel, 60.0);
+  limit_waits(session.timeout());
   const Hello& fluid = session.fluid();
   const Offer offer(fluid);
   Discs discs(fluid, offer);
@@ -253,8 +255,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     code = leave_after(error, "reference_engine", channel.get());
   }
-  channel.reset();
-  disconnect(world);
-  MPI_Finalize();
-  return code;
+  return finish(code, "reference_engine", channel, world.local);
 }
