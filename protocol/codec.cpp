@@ -51,7 +51,10 @@ class Writer {
     *this << std::uint8_t{value.has_value()};
     return value ? *this << *value : *this;
   }
-  Writer& operator<<(const BondReport& b) { return *this << b.intact << b.broken << b.list; }
+  Writer& operator<<(const BondCounts& b) {
+    return *this << b.intact << b.tension << b.shear << b.left << b.lost;
+  }
+  Writer& operator<<(const SolidReport& r) { return *this << r.grains_left << r.bonds << r.list; }
   Writer& operator<<(const Variable& v) { return *this << v.name << v.value; }
   Writer& operator<<(const StepHeader& h) { return *this << h.interval << h.time << h.flags; }
 
@@ -116,7 +119,10 @@ class Reader {
     if (present) *this >> value.emplace();
     return *this;
   }
-  Reader& operator>>(BondReport& b) { return *this >> b.intact >> b.broken >> b.list; }
+  Reader& operator>>(BondCounts& b) {
+    return *this >> b.intact >> b.tension >> b.shear >> b.left >> b.lost;
+  }
+  Reader& operator>>(SolidReport& r) { return *this >> r.grains_left >> r.bonds >> r.list; }
   Reader& operator>>(Variable& v) { return *this >> v.name >> v.value; }
   Reader& operator>>(StepHeader& h) { return *this >> h.interval >> h.time >> h.flags; }
 
@@ -159,7 +165,7 @@ void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Answe
 }
 template <class Io, class M>
 void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, StateBatch> {
-  io(m.head, m.setting, m.states, m.shapes, m.bonds);
+  io(m.head, m.setting, m.states, m.shapes, m.report);
 }
 template <class Io, class M>
 void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, LoadBatch> {

@@ -134,10 +134,18 @@ struct Bond {
   std::int64_t state = 0;              ///< 0 intact, 1 broken by tension, 2 by shear
 };
 
-/// What a solid with bonds tells about them beside its states; counts are of the sending rank.
-struct BondReport {
-  std::int64_t intact = 0, broken = 0;
-  std::vector<Bond> list;  ///< empty unless it was asked for
+/// What became of a solid's bonds: how many are there now, and since the beginning of the run how
+/// many broke by tension and by shear, left the box with a particle, or vanished with one that was
+/// taken out.
+struct BondCounts {
+  std::int64_t intact = 0, tension = 0, shear = 0, left = 0, lost = 0;
+};
+
+/// What a solid tells of itself beside its states; counts are of the sending rank.
+struct SolidReport {
+  std::int64_t grains_left = 0;     ///< through sides that are not periodic, since the beginning
+  std::optional<BondCounts> bonds;  ///< nothing where there never were any
+  std::vector<Bond> list;           ///< of bonds; empty unless it was asked for
 };
 
 struct StateBatch {
@@ -145,7 +153,7 @@ struct StateBatch {
   Setting setting;
   std::vector<State> states;
   std::vector<Shape> shapes;
-  std::optional<BondReport> bonds;  ///< to fluid rank 0 only; not kept in traces
+  std::optional<SolidReport> report;  ///< to fluid rank 0 only; not kept in traces
 };
 
 struct LoadBatch {

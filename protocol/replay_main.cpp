@@ -43,11 +43,19 @@ TraceComparison play_solid(Channel& channel, const Trace& trace, double timeout)
   return result;
 }
 
+/// The fluid's hello without the folder of the run that was recorded: a script must not write there
+/// again.
+Hello hello_to_replay(const Trace& trace) {
+  Hello hello = trace.hello(Role::Fluid);
+  std::erase_if(hello.variables, [](const Variable& v) { return v.name == "out_folder"; });
+  return hello;
+}
+
 /// Answers the recorded loads by particle id and compares the states.
 TraceComparison play_fluid(Channel& channel, const Trace& trace, double timeout) {
   const auto record = timeline(trace);
   TraceComparison result(record);
-  FluidSession session(channel, trace.hello(Role::Fluid), timeout);
+  FluidSession session(channel, hello_to_replay(trace), timeout);
   session.agree();
   std::vector<State> states;
   std::vector<Load> loads;

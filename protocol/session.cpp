@@ -169,15 +169,26 @@ bool FluidSession::merge_as_before(const std::vector<StateBatch>& batches) {
   return true;
 }
 
-void FluidSession::merge_bonds(const std::vector<StateBatch>& batches) {
-  arrival_.bonds.reset();
+namespace {
+
+void add(SolidReport& sum, const SolidReport& part) {
+  sum.grains_left += part.grains_left;
+  sum.list.insert(sum.list.end(), part.list.begin(), part.list.end());
+  if (!part.bonds) return;
+  if (!sum.bonds) sum.bonds.emplace();
+  for (const auto count : {&BondCounts::intact, &BondCounts::tension, &BondCounts::shear,
+                           &BondCounts::left, &BondCounts::lost})
+    (*sum.bonds).*count += (*part.bonds).*count;
+}
+
+}  // namespace
+
+void FluidSession::merge_reports(const std::vector<StateBatch>& batches) {
+  arrival_.report.reset();
   for (const StateBatch& batch : batches) {
-    if (!batch.bonds) continue;
-    if (!arrival_.bonds) arrival_.bonds.emplace();
-    arrival_.bonds->intact += batch.bonds->intact;
-    arrival_.bonds->broken += batch.bonds->broken;
-    arrival_.bonds->list.insert(arrival_.bonds->list.end(), batch.bonds->list.begin(),
-                                batch.bonds->list.end());
+    if (!batch.report) continue;
+    if (!arrival_.report) arrival_.report.emplace();
+    add(*arrival_.report, *batch.report);
   }
 }
 
@@ -205,7 +216,7 @@ void FluidSession::check_states(std::span<const Particle> before,
 void FluidSession::merge(const std::vector<StateBatch>& batches) {
   arrival_.head = batches.front().head;
   arrival_.goodbye.reset();
-  merge_bonds(batches);
+  merge_reports(batches);
   if (merge_as_before(batches)) return;
   const auto told = learn_shapes(batches);
   struct Origin {
@@ -288,10 +299,10 @@ void SolidSession::agree(const Hello& hello) {
 }
 
 void SolidSession::send(const StepHeader& head, std::span<const State> states,
-                        std::span<const Shape> shapes, const std::optional<BondReport>& bonds) {
+                        std::span<const Shape> shapes, const std::optional<SolidReport>& report) {
   const Stopwatch watch(waited_);
   for (int r = 0; r < channel_->remote_size(); ++r)
-    send_states(r, head, states, shapes, r == 0 ? bonds : std::nullopt);
+    send_states(r, head, states, shapes, r == 0 ? report : std::nullopt);
   head_ = head;
   loads_.assign(states.size(), Load{});
   for (std::size_t i = 0; i < states.size(); ++i) loads_[i].id = states[i].id;
@@ -307,16 +318,16 @@ SolidSession::Reply SolidSession::collect() {
 
 SolidSession::Reply SolidSession::exchange(const StepHeader& head, std::span<const State> states,
                                            std::span<const Shape> shapes,
-                                           const std::optional<BondReport>& bonds) {
-  send(head, states, shapes, bonds);
+                                           const std::optional<SolidReport>& report) {
+  send(head, states, shapes, report);
   if (head.flags & kLast) return {kContinue, loads_};
   return collect();
 }
 
 void SolidSession::send_states(int rank, const StepHeader& head, std::span<const State> states,
                                std::span<const Shape> shapes,
-                               const std::optional<BondReport>& bonds) {
-  StateBatch batch{head, setting_, {}, {}, bonds};
+                               const std::optional<SolidReport>& report) {
+  StateBatch batch{head, setting_, {}, {}, report};
   batch.states.reserve(states.size());
   std::vector<Shape>& told = told_[rank];
   std::unordered_map<std::int64_t, Shape> others;  // told before; only where the order has changed

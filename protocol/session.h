@@ -26,7 +26,7 @@ struct Arrival {
   StepHeader head;
   std::vector<Particle> particles;
   std::optional<std::string> goodbye;  ///< the solid left in good order; no particles then
-  std::optional<BondReport> bonds;     ///< summed over the solid's ranks
+  std::optional<SolidReport> report;   ///< summed over the solid's ranks
 };
 
 class FluidSession {
@@ -51,7 +51,7 @@ class FluidSession {
  private:
   std::vector<std::int64_t> learn_shapes(const std::vector<StateBatch>& batches);
   void merge(const std::vector<StateBatch>& batches);
-  void merge_bonds(const std::vector<StateBatch>& batches);
+  void merge_reports(const std::vector<StateBatch>& batches);
   bool merge_as_before(const std::vector<StateBatch>& batches);
   void check_states(std::span<const Particle> before, std::span<const std::int64_t> told);
 
@@ -93,15 +93,15 @@ class SolidSession {
   /// Sends this rank's states.
   /// @throws ProtocolError  a particle is as far outside of the box as that is long
   /// @param states, shapes  one each a particle, same order
-  /// @param bonds  what a solid with bonds has to say of them
+  /// @param report  what this rank has to say of itself
   void send(const StepHeader& head, std::span<const State> states, std::span<const Shape> shapes,
-            const std::optional<BondReport>& bonds = {});
+            const std::optional<SolidReport>& report = {});
   /// Waits for the loads of the states sent last, summed over fluid ranks in rank order; a particle
   /// that touches no fluid has none.
   Reply collect();
   /// Both, one after the other, as the serial schedule has it. With kLast nothing is waited for.
   Reply exchange(const StepHeader& head, std::span<const State> states,
-                 std::span<const Shape> shapes, const std::optional<BondReport>& bonds = {});
+                 std::span<const Shape> shapes, const std::optional<SolidReport>& report = {});
 
   /// Leaves in good order instead of the next states.
   void goodbye(const std::string& reason);
@@ -110,7 +110,7 @@ class SolidSession {
 
  private:
   void send_states(int rank, const StepHeader& head, std::span<const State> states,
-                   std::span<const Shape> shapes, const std::optional<BondReport>& bonds);
+                   std::span<const Shape> shapes, const std::optional<SolidReport>& report);
   std::uint32_t add_loads(int rank);
 
   Channel* channel_;

@@ -54,7 +54,7 @@ def main():
     run.write_results(results, [quantity("height at the end", y[-1], "m"),
                                 quantity("way along the channel", x[-1] - x[0], "m"),
                                 quantity("speed at the end", run.probes()["vx"][-1], "m/s")])
-    write_table(run.folder / "history.csv", {"time": t, "x": x, "y": y})
+    write_table(run.folder / "history.csv", {"time [s]": t, "x [m]": x, "y [m]": y})
     labels = {"variant-40mm": "from 9 mm, 40 mm long", "variant-step4": "from 9 mm, step / 4", "set-fine": "from 9 mm, cell / 2"}
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 3.4), width_ratios=(1.6, 1))
     left.plot(track(run)[0], 1e3 * track(run)[1], label=start(run))

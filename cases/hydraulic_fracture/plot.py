@@ -13,8 +13,7 @@ def breaks(run):
     """Arrays of all breaks: time since the water came [s], mode, place [m][2], direction of the crack from the
     x axis, across the bond [degrees, -90 … 90]."""
     rows = [line.split(",") for line in (run.folder / "breaks.csv").read_text().splitlines()[1:]]
-    relaxed = 20000 * run.parameters["interval"] / run.summary["substeps"]
-    return (np.array([float(r[1]) for r in rows]) - relaxed, np.array([r[4] for r in rows], dtype=str),
+    return (np.array([float(r[1]) for r in rows]), np.array([r[4] for r in rows], dtype=str),
             np.array([[float(r[6]), float(r[7])] for r in rows]).reshape(-1, 2),
             np.array([(np.degrees(np.arctan2(float(r[10]), float(r[9]))) + 180) % 180 - 90 for r in rows]))
 
@@ -45,9 +44,9 @@ def write_history(run):
     time, mode, _, angle = breaks(run)
     count = lambda chosen: np.searchsorted(np.sort(time[chosen]), times)  # noqa: E731
     write_table(run.folder / "history.csv", {
-        "time": times, "bonds_broken": count(np.full(len(time), True)), "by_tension": count(mode == "tension"),
-        "cracks_within_45_degrees_of_the_horizontal": count(np.abs(angle) < 45),
-        "cavity": [cavity(run, name) for _, name in frames]})
+        "time [s]": times, "bonds_broken [1]": count(np.full(len(time), True)), "by_tension [1]": count(mode == "tension"),
+        "cracks_within_45_degrees_of_the_horizontal [1]": count(np.abs(angle) < 45),
+        "cavity [m²]": [cavity(run, name) for _, name in frames]})
 
 
 def cavity(run, name):

@@ -20,8 +20,7 @@ def left_through_pipe(run):
 def breaks(run):
     """Times of the breaks since the water came."""
     lines = (run.folder / "breaks.csv").read_text().splitlines()[1:]
-    relaxed = 20000 * run.parameters["interval"] / run.summary["substeps"]
-    return np.array([float(line.split(",")[1]) for line in lines]) - relaxed
+    return np.array([float(line.split(",")[1]) for line in lines])
 
 
 def draw(axes, run, time, name, vmax):
@@ -92,8 +91,8 @@ def main():
                               "Wang, Feng and Wang 2016: they leave one by one", 0))
     run.write_results(results, quantities(run))
     time, lost = left_through_pipe(run)
-    write_table(run.folder / "history.csv", {"time": time, "discs_gone": lost, "fastest_disc": fastest(run),
-                                             "bonds_broken": np.searchsorted(np.sort(breaks(run)), time)})
+    write_table(run.folder / "history.csv", {"time [s]": time, "discs_gone [1]": lost, "fastest_disc [m/s]": fastest(run),
+                                             "bonds_broken [1]": np.searchsorted(np.sort(breaks(run)), time)})
     for label, r in runs.items():
         s = r.summary
         print(f"run | note | {label}: {gone[label]} of {DISCS} discs gone, {len(breaks(r))} bonds broken, "

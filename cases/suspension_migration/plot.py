@@ -52,15 +52,15 @@ def main():
     print(f"run | note | {len(times)} crossings; fluid {middle:.2f} m/s around the axis, {side:.2f} m/s at the wall; "
           f"{run.summary['wall_seconds']:.0f} s of wall time")
     figure, (left, middle_axes, right) = plt.subplots(1, 3, figsize=(10.5, 3.4), sharey=True)
-    columns = {"y": (np.arange(ny) + 0.5) / ny * HEIGHT}
+    columns = {"y [m]": (np.arange(ny) + 0.5) / ny * HEIGHT}
     for step in SHOWN:
         time, name = frame_at(run, step)
         frame = run.frame(name)
         y = (np.arange(ny) + 0.5) / ny * HEIGHT * 1e3
         label = f"step {step}"
-        columns[f"fluid_velocity_{step}"] = fluid_velocity(frame)
-        columns[f"solid_fraction_{step}"] = frame["solid_fraction"].mean(axis=1)
-        left.plot(columns[f"fluid_velocity_{step}"], y, label=label)
+        columns[f"fluid_velocity_{step} [m/s]"] = fluid_velocity(frame)
+        columns[f"solid_fraction_{step} [1]"] = frame["solid_fraction"].mean(axis=1)
+        left.plot(columns[f"fluid_velocity_{step} [m/s]"], y, label=label)
         _, _, py, _, vx, *_ = frame["particles"].T
         edges = np.linspace(0, HEIGHT, BINS // 2 + 1)
         bin_of = np.clip(np.digitize(py, edges) - 1, 0, len(edges) - 2)

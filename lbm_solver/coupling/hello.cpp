@@ -94,6 +94,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   whole("substeps", plan.substeps);
   whole("solid_steps_total", (plan.intervals - start.interval) * plan.substeps);
   whole("restart", start.interval > 0 ? 1 : 0);
+  h.variables.push_back({"out_folder", start.out});
   h.variables.push_back({"checkpoint", start.checkpoint});
   h.variables.push_back({"restart_file", start.solid_part});
   number("coupling_timeout", s.coupling->timeout);

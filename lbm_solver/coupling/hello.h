@@ -13,6 +13,7 @@ namespace lbm {
 /// Where a run begins, and where its checkpoints lie.
 struct RunStart {
   std::int64_t interval = 0;                  ///< 0, or that of the checkpoint it goes on from
+  std::string out = "out";                    ///< folder of all output, as the user named it
   std::string checkpoint = "out/checkpoint";  ///< path without ending
   std::string solid_part = "none";            ///< the solid's file of the one it goes on from
 };

@@ -25,6 +25,22 @@ std::string duration_text(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
+constexpr double kParted = 1.5;  // distance over sum of radii from which a broken bond is not drawn
+
+/// A place in [lo, lo + length) that is `length` times a whole number away.
+double wrapped(double x, double lo, double length) {
+  if (x >= lo && x < lo + length) return x;
+  const double inside = x - length * std::floor((x - lo) / length);
+  return inside < lo + length ? inside : lo;  // rounding
+}
+
+/// What a progress line says of grains and bonds.
+std::string solid_text(const Particles* particles) {
+  const std::string text =
+      particles && particles->report() ? describe(*particles->report()) : std::string();
+  return text.empty() ? text : ", " + text;
+}
+
 }  // namespace
 
 void PartClock::charge(const char* part) {
@@ -53,13 +69,15 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
   if (scene.output.fields_every > 0.0)
     field_times_.emplace(scene.output.fields_every, plan.interval());
   const bool flat = scene.box.dimension == 2;
-  if (!obstacle_bodies(scene, plan).empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
+  if (!scene.obstacles.empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
   if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);
   if (ranks.rank() != 0) return;
   if (scene.coupling) probes_.emplace(folder, scene.box.dimension, keep);
   if (!scene.output.points.empty())
     points_.emplace(folder + "/points.csv",
-                    flat ? "time,x,y,pressure,ux,uy" : "time,x,y,z,pressure,ux,uy,uz", keep);
+                    flat ? "time [s],x [m],y [m],pressure [Pa],ux [m/s],uy [m/s]"
+                         : "time [s],x [m],y [m],z [m],pressure [Pa],ux [m/s],uy [m/s],uz [m/s]",
+                    keep);
   if (field_times_) fields_.emplace(folder, plan.units, scene.box.dimension, keep);
 }
 
@@ -108,7 +126,7 @@ void Observers::restore(const std::vector<double>& s) {
 }
 
 void Observers::write_particles(double time, const Particles& particles) {
-  const Particles::Everything all = particles.gather();
+  const Particles::Everything all = shown(particles);
   if (probes_) probes_->write(time, all.particles, all.loads);
 }
 
@@ -166,37 +184,47 @@ void Observers::guard(std::int64_t state, Fluid& fluid, const Particles* particl
   warned_ = true;
 }
 
-/// Lines between the centres of bonded particles; across a periodic side there is none.
+/// Lines between the centres of bonded particles; across a periodic side there is none, nor where
+/// a bond is broken and the two have parted.
 void Observers::add_bonds(const std::vector<protocol::Particle>& particles,
-                          const protocol::BondReport& bonds, FieldFrame& frame) const {
-  std::unordered_map<std::int64_t, const protocol::State*> by_id;
-  for (const auto& p : particles) by_id.emplace(p.state.id, &p.state);
+                          const std::vector<protocol::Bond>& bonds, FieldFrame& frame) const {
+  std::unordered_map<std::int64_t, const protocol::Particle*> by_id;
+  for (const auto& p : particles) by_id.emplace(p.state.id, &p);
   const int d = scene_.box.dimension;
-  for (const protocol::Bond& bond : bonds.list) {
+  for (const protocol::Bond& bond : bonds) {
     const auto a = by_id.find(bond.first), b = by_id.find(bond.second);
     if (a == by_id.end() || b == by_id.end()) continue;  // one has left the box
-    const auto &x = a->second->x, &y = b->second->x;
+    const auto &x = a->second->state.x, &y = b->second->state.x;
     bool across = false;
-    for (int k = 0; k < d; ++k) across = across || std::abs(x[k] - y[k]) > 0.5 * scene_.box.size[k];
-    if (across) continue;
+    double squares = 0.0;
+    for (int k = 0; k < d; ++k) {
+      across = across || std::abs(x[k] - y[k]) > 0.5 * scene_.box.size[k];
+      squares += (x[k] - y[k]) * (x[k] - y[k]);
+    }
+    const double touching = a->second->shape.radius + b->second->shape.radius;
+    if (across || (bond.state != 0 && std::sqrt(squares) > kParted * touching)) continue;
     for (const auto* end : {&x, &y})
       frame.bond_ends.insert(frame.bond_ends.end(), end->begin(), end->begin() + d);
     frame.bond_state.push_back(static_cast<double>(bond.state));
   }
 }
 
+/// All particles of the box. LIGGGHTS wraps places at periodic sides only now and then: what is
+/// written lies in the box.
+Particles::Everything Observers::shown(const Particles& particles) const {
+  Particles::Everything all = particles.gather();
+  for (protocol::Particle& p : all.particles)
+    for (int k = 0; k < scene_.box.dimension; ++k)
+      if (scene_.box.sides[k] == SideKind::Periodic)
+        p.state.x[k] = wrapped(p.state.x[k], scene_.box.origin[k], scene_.box.size[k]);
+  return all;
+}
+
 void Observers::add_particles(const Particles& particles, FieldFrame& frame) const {
-  const Particles::Everything all = particles.gather();
-  for (const auto& [s, shape] : all.particles) {
-    auto& to = frame.particles;
-    const auto id = static_cast<double>(s.id), type = static_cast<double>(shape.type);
-    if (frame.nz == 1)
-      to.insert(to.end(), {id, s.x[0], s.x[1], shape.radius, s.v[0], s.v[1], s.omega[2], type});
-    else
-      to.insert(to.end(), {id, s.x[0], s.x[1], s.x[2], shape.radius, s.v[0], s.v[1], s.v[2],
-                           s.omega[0], s.omega[1], s.omega[2], type});
-  }
-  if (particles.bonds()) add_bonds(all.particles, *particles.bonds(), frame);
+  Particles::Everything all = shown(particles);
+  if (particles.report()) add_bonds(all.particles, particles.report()->list, frame);
+  frame.particles = std::move(all.particles);
+  frame.loads = std::move(all.loads);
 }
 
 void Observers::write_fields(double time, Fluid& fluid, const Particles* particles) {
@@ -241,10 +269,7 @@ void Observers::report_progress(std::int64_t state, const Particles* particles) 
                             state, time_of(intervals_done_), 100.0 * done, updates / wall * 1e-6,
                             duration_text(left), last_speed_ * std::numbers::sqrt3,
                             last_speed_ * plan_.units.velocity()) +
-                    (particles && particles->bonds()
-                         ? fmt::format(", bonds {} ({} broken)", particles->bonds()->intact,
-                                       particles->bonds()->broken)
-                         : ""));
+                    solid_text(particles));
 }
 
 Summary Observers::summary(double wall_seconds) const {

@@ -64,8 +64,10 @@ class Observers {
   /// writes the particles' rows of this one.
   /// @throws NumericsError
   void after_interval(std::int64_t state, Fluid& fluid, const Particles* particles);
-  /// After each fluid step of a scene with obstacles: loads in the order of obstacle_bodies.
-  void add_loads(std::span<const BodyLoad> loads) { obstacles_->add(loads); }
+  /// After each fluid step: loads in the order of obstacle_bodies.
+  void add_loads(const Fluid& fluid, std::span<const BodyLoad> loads) {
+    if (obstacles_) obstacles_->add(fluid, loads);
+  }
   /// A fluid alone whose velocity no longer changes (run.steady_below).
   bool steady() const { return steady_ && steady_->steady(); }
 
@@ -74,9 +76,10 @@ class Observers {
  private:
   double time_of(std::int64_t state) const { return static_cast<double>(state) * plan_.interval(); }
   void guard(std::int64_t state, Fluid& fluid, const Particles* particles);
+  Particles::Everything shown(const Particles& particles) const;
   void add_particles(const Particles& particles, FieldFrame& frame) const;
   void add_bonds(const std::vector<protocol::Particle>& particles,
-                 const protocol::BondReport& bonds, FieldFrame& frame) const;
+                 const std::vector<protocol::Bond>& bonds, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
   void write_points(double time, Fluid& fluid);
   void write_particles(double time, const Particles& particles);

@@ -5,25 +5,31 @@ namespace lbm {
 
 ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                              const std::string& folder, double keep_until)
-    : units_(plan.units), ranks_(ranks) {
+    : units_(plan.units), ranks_(ranks), boxes_(obstacle_blocks(scene, plan)) {
   const bool flat = scene.box.dimension == 2;
   if (ranks.rank() == 0)
     table_.emplace(folder + "/obstacles.csv",
-                   flat ? "time,obstacle,fx,fy,torque" : "time,obstacle,fx,fy,fz,tx,ty,tz",
+                   flat ? "time [s],obstacle [1],fx [N],fy [N],torque [N m]"
+                        : "time [s],obstacle [1],fx [N],fy [N],fz [N],tx [N m],ty [N m],tz [N m]",
                    keep_until);
   int lines = 0;
   for (const ObstacleScene& o : scene.obstacles) {
-    if (!o.round) continue;
     has_grains_ = has_grains_ || o.grain;
-    line_.push_back(o.grain ? 0 : ++lines);
+    (o.round ? line_ : block_line_).push_back(o.grain ? 0 : ++lines);
   }
   sums_.resize(lines + 1);
 }
 
-void ObstacleLoads::add(std::span<const BodyLoad> loads) {
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    sums_[line_[i]].force += loads[i].force;
-    sums_[line_[i]].torque += loads[i].torque;
+void ObstacleLoads::add(const Fluid& fluid, std::span<const BodyLoad> bodies) {
+  const auto add_to = [this](int line, const BodyLoad& load) {
+    sums_[line].force += load.force;
+    sums_[line].torque += load.torque;
+  };
+  for (std::size_t i = 0; i < bodies.size(); ++i) add_to(line_[i], bodies[i]);
+  if (!boxes_.empty()) {
+    if (!blocks_) blocks_.emplace(fluid, boxes_);
+    const std::vector<BodyLoad> loads = blocks_->loads(fluid);
+    for (std::size_t i = 0; i < loads.size(); ++i) add_to(block_line_[i], loads[i]);
   }
   ++steps_;
 }

@@ -13,16 +13,16 @@
 namespace lbm {
 
 /// Writes the mean loads on the scene's obstacles since the line before to `obstacles.csv`, in SI
-/// units: a line for each obstacle by its number from 1, and one numbered 0 for the sum over the
-/// grains of a file.
+/// units: a line for each obstacle by its number in the scene, from 1, and one numbered 0 for the
+/// sum over the grains of a file. The torque on a block is about its centre.
 class ObstacleLoads {
  public:
   /// @param keep_until  a run that goes on keeps the lines before this time
   ObstacleLoads(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                 const std::string& folder, double keep_until);
 
-  /// After each fluid step: this rank's loads in the order of obstacle_bodies.
-  void add(std::span<const BodyLoad> loads);
+  /// After each fluid step. @param bodies  this rank's loads in the order of obstacle_bodies
+  void add(const Fluid& fluid, std::span<const BodyLoad> bodies);
   /// Collective.
   void write(double time);
 
@@ -36,8 +36,11 @@ class ObstacleLoads {
   const Units units_;
   const Decomposition ranks_;
   std::optional<CsvWriter> table_;  // of rank 0
-  std::vector<int> line_;           // [obstacle]: into sums_
-  std::vector<BodyLoad> sums_;      // since the last line, of this rank; 0: grains
+  std::vector<int> line_;           // [round obstacle]: into sums_
+  std::vector<int> block_line_;     // [block]: into sums_
+  const std::vector<CellBox> boxes_;
+  std::optional<BlockLoads> blocks_;  // from the first step on
+  std::vector<BodyLoad> sums_;        // since the last line, of this rank; 0: grains
   bool has_grains_ = false;
   int steps_ = 0;
 };

@@ -79,9 +79,9 @@ class Particles {
             const std::string& solid_term)
       : Particles(units, scene, Decomposition(domain), solid_term) {}
 
-  /// What the solid told about its bonds with the particles; null where it has none.
-  const protocol::BondReport* bonds() const { return bonds_ ? &*bonds_ : nullptr; }
-  void tell_bonds(const std::optional<protocol::BondReport>& bonds) { bonds_ = bonds; }
+  /// What the solid told of itself with the particles; on rank 0, and null where it tells nothing.
+  const protocol::SolidReport* report() const { return report_ ? &*report_ : nullptr; }
+  void tell(const std::optional<protocol::SolidReport>& report) { report_ = report; }
 
   /// Takes the particles of a new interval of `interval` seconds. One whose shape has another epoch
   /// than before starts anew: nothing that was known of the one with its id holds for it.
@@ -166,7 +166,7 @@ class Particles {
   std::vector<protocol::Load> loads_;         // this rank's parts
   std::vector<protocol::Load> whole_;         // of all ranks; where virtual masses are about
   std::vector<protocol::Load> loads_before_;  // loads_ of the interval before
-  std::optional<protocol::BondReport> bonds_;
+  std::optional<protocol::SolidReport> report_;
 };
 
 }  // namespace lbm

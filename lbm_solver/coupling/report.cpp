@@ -203,13 +203,15 @@ std::string describe_cost(const Scene& s, const Plan& p) {
 }
 
 std::string describe(const Summary& s) {
+  std::string solid = s.solid ? describe(*s.solid) : std::string();
+  if (!solid.empty()) solid = "solid        " + solid + "\n";
   std::string out = fmt::format(
       "ending       {}\n"
       "made         {} steps of {} cells, {:.6g} s, in {:.3g} s: {:.1f} million updates/s\n"
       "largest      Ma = u/c_s {:.3g}, u/C {:.3g}; mass drift {:.2g}\n"
-      "time         ",
+      "{}time         ",
       s.ending, s.steps, s.cells, s.physical_seconds, s.wall_seconds, s.mlups, s.ma_max, s.ma_paper,
-      s.mass_drift);
+      s.mass_drift, solid);
   for (const auto& [part, share] : s.time_share)
     out += fmt::format("{} {:.0f} %  ", part, 100.0 * share);
   if (!s.time_share.contains("waiting") || s.wall_seconds < 1.0) return out;

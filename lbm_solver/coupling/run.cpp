@@ -86,6 +86,7 @@ RunStart start_of(const RunOptions& options, const Plan& plan, const State& stat
   const auto path = [&](const std::string& name) {
     return std::filesystem::absolute(options.out + "/" + name).lexically_normal().string();
   };
+  start.out = options.out;
   start.checkpoint = path("checkpoint");
   if (options.restart.empty()) return start;
   start.interval = static_cast<std::int64_t>(state.at("interval")[0]);
@@ -152,6 +153,7 @@ class CoupledRun {
     summary.versions[partner_.program] = partner_.program_version;
     summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
     summary.waiting = clock_.parts().at("waiting");
+    if (particles_.report()) summary.solid = *particles_.report();
     if (ranks_.rank() == 0) write_summary(options_.out, summary);
     return summary;
   }
@@ -173,7 +175,7 @@ class CoupledRun {
       else
         stands_at_.reset();
       particles_.arrive(arrival.particles, plan_.interval());
-      particles_.tell_bonds(arrival.bonds);
+      particles_.tell(arrival.report);
       place(0);
       observers_.at_state(interval, fluid_, &particles_, last);
       clock_.charge("output");
@@ -210,7 +212,7 @@ class CoupledRun {
       lubrication_.add(bodies_, masses_, plan_.domain, ranks_.cells(), loads);
     }
     const std::span<const BodyLoad> all(loads);
-    if (obstacles_ > 0) observers_.add_loads(all.first(obstacles_));
+    observers_.add_loads(fluid_, all.first(obstacles_));
     particles_.add(all.subspan(obstacles_));
     clock_.charge("loads");
   }
@@ -315,7 +317,6 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     state = load(checkpoint, plan, ranks);
     fluid.restore(state);
   }
-  const bool loads = !obstacle_bodies(scene, plan).empty();
   Observers observers(scene, plan, ranks, options.out, log, fluid.steps());
   if (!options.restart.empty()) {
     observers.restore(state["observers"]);
@@ -343,7 +344,7 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     if (every > 0) next = std::min(next, (step / every + 1) * every);
     fluid.advance(next - step);
     clock.charge("sweep");
-    if (loads) observers.add_loads(fluid.loads());
+    if (!scene.obstacles.empty()) observers.add_loads(fluid, fluid.loads());
     clock.charge("loads");
     observers.after_interval(next - 1, fluid, nullptr);
     clock.charge("output");

@@ -28,17 +28,66 @@ hid_t memory_type<double>() {
   return H5T_NATIVE_DOUBLE;
 }
 
+/// @param unit  of the numbers, or of each column
+/// @param columns  of a table, their names
 template <class T>
 void write_array(hid_t group, const char* name, const std::vector<T>& data,
-                 const std::vector<hsize_t>& shape) {
+                 const std::vector<hsize_t>& shape, const char* unit,
+                 const char* columns = nullptr) {
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                      H5Sclose, "make a space");
   const Handle set(
       H5Dcreate2(group, name, memory_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
       H5Dclose, std::string("create ") + name);
+  protocol::hdf5::set_attribute(set, columns ? "units" : "unit", std::string(unit));
+  if (columns) protocol::hdf5::set_attribute(set, "columns", std::string(columns));
   if (data.empty()) return;
   check(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()),
         std::string("write ") + name + " (is the disk full?)");
+}
+
+/// What ParaView shows of each particle beside its place and radius.
+struct PointValue {
+  const char *name, *unit;
+  int components;
+  void (*append)(std::vector<double>& to, const protocol::Particle& p, const protocol::Load& load);
+};
+void append(std::vector<double>& to, const protocol::Vec3& v) {
+  to.insert(to.end(), v.begin(), v.end());
+}
+using Values = std::vector<double>;
+using protocol::Load;
+using protocol::Particle;
+constexpr std::array kPointValues{
+    PointValue{"id", "1", 1,
+               [](Values& to, const Particle& p, const Load&) {
+                 to.push_back(static_cast<double>(p.state.id));
+               }},
+    PointValue{"type", "1", 1,
+               [](Values& to, const Particle& p, const Load&) {
+                 to.push_back(static_cast<double>(p.shape.type));
+               }},
+    PointValue{"radius", "m", 1,
+               [](Values& to, const Particle& p, const Load&) { to.push_back(p.shape.radius); }},
+    PointValue{"velocity", "m/s", 3,
+               [](Values& to, const Particle& p, const Load&) { append(to, p.state.v); }},
+    PointValue{"angular_velocity", "rad/s", 3,
+               [](Values& to, const Particle& p, const Load&) { append(to, p.state.omega); }},
+    PointValue{"force", "N", 3,
+               [](Values& to, const Particle&, const Load& l) { append(to, l.force); }},
+    PointValue{"torque", "N m", 3,
+               [](Values& to, const Particle&, const Load& l) { append(to, l.torque); }},
+};
+
+/// A row of the table of particles.
+void append_row(std::vector<double>& to, const Particle& p, bool flat) {
+  const auto& [s, shape] = p;
+  const auto id = static_cast<double>(s.id), type = static_cast<double>(shape.type);
+  if (flat)
+    to.insert(to.end(), {id, s.x[0], s.x[1], shape.radius, s.v[0], s.v[1], s.omega[2], type});
+  else
+    to.insert(to.end(), {id, s.x[0], s.x[1], s.x[2], shape.radius, s.v[0], s.v[1], s.v[2],
+                         s.omega[0], s.omega[1], s.omega[2], type});
 }
 
 std::string group_name(std::size_t index) {
@@ -53,6 +102,8 @@ FieldWriter::FieldWriter(const std::string& folder, const Units& units, int dime
   if (keep_until > 0.0 && keep_frames(keep_until)) return;
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Create);
   protocol::hdf5::set_attribute(file, "cell", units.dx);
+  protocol::hdf5::set_attribute(file, "unit of cell and origin", std::string("m"));
+  protocol::hdf5::set_attribute(file, "unit of time", std::string("s"));
   protocol::hdf5::set_attribute(file, "origin_x", units.origin.x());
   protocol::hdf5::set_attribute(file, "origin_y", units.origin.y());
   if (dimension == 3) protocol::hdf5::set_attribute(file, "origin_z", units.origin.z());
@@ -112,32 +163,48 @@ void FieldWriter::write(const FieldFrame& f) {
   const Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                      H5Gclose, "create " + name);
   protocol::hdf5::set_attribute(group, "time", f.time);
-  const auto d = static_cast<std::size_t>(dimension_);
-  const std::size_t count = f.particles.size() / columns(), bonds = f.bond_state.size();
-  const Entry entry{f.time, f.nx, f.ny, f.nz, !f.solid_fraction.empty(), count, bonds};
+  const std::size_t bonds = f.bond_state.size();
+  const Entry entry{f.time, f.nx, f.ny, f.nz, !f.solid_fraction.empty(), f.particles.size(), bonds};
   std::vector<hsize_t> cells;
   for (const auto n : shape(entry)) cells.push_back(n);
   std::vector<hsize_t> vectors = cells;
   vectors.push_back(3);
-  write_array(group, "pressure", f.pressure, cells);
-  write_array(group, "velocity", f.velocity, vectors);
-  if (entry.solids) write_array(group, "solid_fraction", f.solid_fraction, cells);
-  write_array(group, "particles", f.particles, {count, columns()});
+  write_array(group, "pressure", f.pressure, cells, "Pa");
+  write_array(group, "velocity", f.velocity, vectors, "m/s");
+  if (entry.solids) write_array(group, "solid_fraction", f.solid_fraction, cells, "1");
+  write_particles(group, f);
   if (bonds > 0) {
-    write_array(group, "bond_ends", f.bond_ends, {2 * bonds, d});
-    write_array(group, "bond_state", f.bond_state, {bonds});
-  }
-  if (!f.particles.empty()) {  // by columns, as ParaView wants them
-    std::vector<double> places, radius;
-    for (const double* p = f.particles.data(); radius.size() < count; p += columns()) {
-      places.insert(places.end(), p + 1, p + 1 + d);
-      radius.push_back(p[1 + d]);
-    }
-    write_array(group, "particle_places", places, {radius.size(), d});
-    write_array(group, "particle_radius", radius, {radius.size()});
+    const auto d = static_cast<hsize_t>(dimension_);
+    write_array(group, "bond_ends", f.bond_ends, {2 * bonds, d}, "m");
+    write_array(group, "bond_state", f.bond_state, {bonds},
+                "1: 0 intact, 1 broken by tension, 2 by shear");
   }
   entries_.push_back(entry);
   write_xdmf();
+}
+
+/// The table of particles, and by columns, as ParaView wants them.
+void FieldWriter::write_particles(hid_t group, const FieldFrame& f) const {
+  const bool flat = dimension_ == 2;
+  const std::size_t count = f.particles.size();
+  std::vector<double> table, places;
+  for (const Particle& p : f.particles) {
+    append_row(table, p, flat);
+    places.insert(places.end(), p.state.x.begin(), p.state.x.begin() + dimension_);
+  }
+  write_array(group, "particles", table, {count, flat ? hsize_t{8} : hsize_t{12}},
+              flat ? "1,m,m,m,m/s,m/s,rad/s,1" : "1,m,m,m,m,m/s,m/s,m/s,rad/s,rad/s,rad/s,1",
+              flat ? "id,x,y,radius,vx,vy,omega,type"
+                   : "id,x,y,z,radius,vx,vy,vz,omega_x,omega_y,omega_z,type");
+  if (count == 0) return;
+  write_array(group, "particle_places", places, {count, static_cast<hsize_t>(dimension_)}, "m");
+  for (const PointValue& value : kPointValues) {
+    std::vector<double> column;
+    for (std::size_t i = 0; i < count; ++i) value.append(column, f.particles[i], f.loads[i]);
+    std::vector<hsize_t> shape{count};
+    if (value.components > 1) shape.push_back(value.components);
+    write_array(group, (std::string("particle_") + value.name).c_str(), column, shape, value.unit);
+  }
 }
 
 /// Cells of a frame, x last.
@@ -149,9 +216,9 @@ std::vector<unsigned long long> FieldWriter::shape(const Entry& e) const {
   return n;
 }
 
-/// The same as text, each number larger by `more`.
+/// The same as text, each number larger by `more`; in two dimensions with a layer before.
 std::string FieldWriter::shape_text(const Entry& e, int more) const {
-  std::string text;
+  std::string text = dimension_ == 2 ? fmt::format("{}", 1 + more) : "";
   for (const auto n : shape(e)) text += fmt::format("{}{}", text.empty() ? "" : " ", n + more);
   return text;
 }
@@ -169,19 +236,14 @@ std::string item(const std::string& path, const std::string& shape, int precisio
 
 std::string FieldWriter::fluid_grid(std::size_t index) const {
   const Entry& e = entries_[index];
-  std::string origin, spacing;
-  for (int axis = dimension_ - 1; axis >= 0; --axis) {
-    origin += fmt::format("{:.9g} ", units_.origin[axis]);
-    spacing += fmt::format("{:.9g} ", units_.dx);
-  }
+  const double h = units_.dx, behind = dimension_ == 2 ? -h : units_.origin.z();
   std::string out = fmt::format(
-      R"(<Grid><Time Value="{:.9g}"/>
-  <Topology TopologyType="{}DCoRectMesh" Dimensions="{}"/>
-  <Geometry GeometryType="{}"><DataItem Format="XML" Dimensions="{}">{}</DataItem>)"
-      R"(<DataItem Format="XML" Dimensions="{}">{}</DataItem></Geometry>
+      R"(<Grid Name="fluid"><Time Value="{:.9g}"/>
+  <Topology TopologyType="3DCoRectMesh" Dimensions="{}"/>
+  <Geometry GeometryType="ORIGIN_DXDYDZ"><DataItem Format="XML" Dimensions="3">{:.9g} {:.9g} {:.9g}</DataItem>)"
+      R"(<DataItem Format="XML" Dimensions="3">{:.9g} {:.9g} {:.9g}</DataItem></Geometry>
 )",
-      e.time, dimension_, shape_text(e, 1), dimension_ == 2 ? "ORIGIN_DXDY" : "ORIGIN_DXDYDZ",
-      dimension_, origin, dimension_, spacing);
+      e.time, shape_text(e, 1), behind, units_.origin.y(), units_.origin.x(), h, h, h);
   const auto attribute = [&](const char* name, const char* kind, const std::string& shape) {
     out += fmt::format(
         "  <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n", name,
@@ -196,13 +258,18 @@ std::string FieldWriter::fluid_grid(std::size_t index) const {
 std::string FieldWriter::particle_grid(std::size_t index) const {
   const Entry& e = entries_[index];
   const std::string group = group_name(index), n = fmt::format("{}", e.particles);
-  return fmt::format(
-      "<Grid><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyvertex\" "
-      "NumberOfElements=\"{}\"/>\n  <Geometry GeometryType=\"{}\">{}</Geometry>\n"
-      "  <Attribute Name=\"radius\" Center=\"Node\">{}</Attribute>\n</Grid>\n",
+  std::string out = fmt::format(
+      "<Grid Name=\"particles\"><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyvertex\" "
+      "NumberOfElements=\"{}\"/>\n  <Geometry GeometryType=\"{}\">{}</Geometry>\n",
       e.time, n, dimension_ == 2 ? "XY" : "XYZ",
-      item(group + "/particle_places", fmt::format("{} {}", n, dimension_), 8),
-      item(group + "/particle_radius", n, 8));
+      item(group + "/particle_places", fmt::format("{} {}", n, dimension_), 8));
+  for (const PointValue& value : kPointValues)
+    out += fmt::format(
+        "  <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
+        value.name, value.components > 1 ? "Vector" : "Scalar",
+        item(group + "/particle_" + value.name,
+             value.components > 1 ? fmt::format("{} {}", n, value.components) : n, 8));
+  return out + "</Grid>\n";
 }
 
 std::string FieldWriter::bond_grid(std::size_t index) const {
@@ -211,7 +278,8 @@ std::string FieldWriter::bond_grid(std::size_t index) const {
   std::string nodes;
   for (std::size_t i = 0; i < e.bonds; ++i) nodes += fmt::format("{} {} ", 2 * i, 2 * i + 1);
   return fmt::format(
-      "<Grid><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
+      "<Grid Name=\"bonds\"><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyline\" "
+      "NodesPerElement=\"2\" "
       "NumberOfElements=\"{}\"><DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"{} 2\">{}"
       "</DataItem></Topology>\n  <Geometry GeometryType=\"{}\">{}</Geometry>\n"
       "  <Attribute Name=\"broken\" Center=\"Cell\">{}</Attribute>\n</Grid>\n",

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "lbm_solver/base/units.h"
+#include "protocol/hdf5_file.h"
+#include "protocol/session.h"
 
 namespace lbm {
 
@@ -16,16 +18,18 @@ struct FieldFrame {
   std::vector<float> pressure;        ///< [nz][ny][nx], against rest and hydrostatic [Pa]
   std::vector<float> velocity;        ///< [nz][ny][nx][3] [m/s]
   std::vector<float> solid_fraction;  ///< [nz][ny][nx]; empty without solids
-  /// [n][8]: id, x, y, radius, vx, vy, omega, type; in three dimensions [n][12]: id, x, y, z,
-  /// radius, vx, vy, vz, omega x, y, z, type.
-  std::vector<double> particles;
-  std::vector<double> bond_ends;   ///< [n][2][dimension]: of both centres [m]
-  std::vector<double> bond_state;  ///< [n]: 0 intact, 1 broken by tension, 2 by shear
+  std::vector<protocol::Particle> particles;
+  std::vector<protocol::Load> loads;  ///< on them, in their order
+  std::vector<double> bond_ends;      ///< [n][2][dimension]: of both centres [m]
+  std::vector<double> bond_state;     ///< [n]: 0 intact, 1 broken by tension, 2 by shear
 };
 
-/// Writes frames to `fields.h5` and keeps `fields.xdmf` beside it, which ParaView opens. The file
-/// is closed after every frame: a kill loses the frame in progress, seldom (while the file is being
-/// closed) makes the file unreadable; a restart then puts it aside and begins a new one.
+/// Writes frames to `fields.h5` and keeps `fields.xdmf` beside it, which ParaView opens: fluid,
+/// particles and bonds, in two dimensions all in the x-y plane, with the fluid as a layer one cell
+/// thick just behind the particles. (ParaView's readers put a two-dimensional mesh of this kind
+/// into the y-z plane.) Every array names its unit, every table its columns, as attributes. The
+/// file is closed after every frame: a kill loses the frame in progress, seldom (while the file is
+/// being closed) makes the file unreadable; a restart then puts it aside and begins a new one.
 class FieldWriter {
  public:
   /// @param folder      must exist
@@ -48,7 +52,7 @@ class FieldWriter {
   };
   std::vector<unsigned long long> shape(const Entry& entry) const;
   std::string shape_text(const Entry& entry, int more) const;
-  std::size_t columns() const { return dimension_ == 2 ? 8 : 12; }
+  void write_particles(hid_t group, const FieldFrame& frame) const;
 
   std::string folder_;
   Units units_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <tuple>
@@ -36,7 +37,8 @@ CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double
 void CsvWriter::row(std::initializer_list<double> values) {
   const char* separator = "";
   for (const double v : values) {
-    fmt::print(file_.get(), "{}{:.12g}", separator, v);
+    fmt::print(file_.get(), "{}", separator);
+    if (!std::isnan(v)) fmt::print(file_.get(), "{:.12g}", v);
     separator = ",";
   }
   fmt::print(file_.get(), "\n");
@@ -55,8 +57,11 @@ void CsvWriter::flush() {
 ProbeWriter::ProbeWriter(const std::string& folder, int dimension, double keep_until)
     : dimension_(dimension),
       table_(folder + "/probes.csv",
-             dimension == 2 ? "time,id,x,y,vx,vy,omega,fx,fy,torque"
-                            : "time,id,x,y,z,vx,vy,vz,wx,wy,wz,fx,fy,fz,tx,ty,tz",
+             dimension == 2
+                 ? "time [s],id [1],x [m],y [m],vx [m/s],vy [m/s],omega [rad/s],fx [N],fy [N],"
+                   "torque [N m]"
+                 : "time [s],id [1],x [m],y [m],z [m],vx [m/s],vy [m/s],vz [m/s],wx [rad/s],"
+                   "wy [rad/s],wz [rad/s],fx [N],fy [N],fz [N],tx [N m],ty [N m],tz [N m]",
              keep_until) {}
 
 void ProbeWriter::write(double time, std::span<const protocol::Particle> particles,

@@ -11,11 +11,12 @@
 
 namespace lbm {
 
-/// A table of numbers that grows line by line and is complete on disk after each.
+/// A table of numbers that grows line by line and is complete on disk after each. A number that is
+/// none (the pressure where there is no fluid) is an empty field.
 class CsvWriter {
  public:
   /// @param path        overwritten, but for the lines kept
-  /// @param columns     first line; the first column is the time
+  /// @param columns     first line, each with its unit: "time [s],x [m]"; the first is the time
   /// @param keep_until  a run that goes on keeps the lines before this time
   CsvWriter(const std::string& path, const std::string& columns, double keep_until = 0.0);
   void row(std::initializer_list<double> values);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/summary.h"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -9,8 +11,89 @@
 
 namespace lbm {
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::map<std::string, std::string> kUnits{
+    {"physical_seconds", "s"},
+    {"wall_seconds", "s"},
+    {"cpu_seconds", "s"},
+    {"waiting", "s"},
+    {"mlups", "1e6 cells/s"},
+    {"megabytes", "MB"},
+    {"cell", "m"},
+    {"time_step", "s"},
+    {"interval", "s"},
+    {"density", "kg/m³"},
+    {"particle_density", "kg/m³"},
+    {"kinematic_viscosity", "m²/s"},
+    {"gravity_x", "m/s²"},
+    {"gravity_y", "m/s²"},
+    {"gravity_z", "m/s²"},
+    {"depth", "m"},
+    {"box_x", "m"},
+    {"box_y", "m"},
+    {"box_z", "m"},
+    {"diameter", "m"},
+    {"velocity_scale", "m/s"},
+    // numbers and ratios
+    {"cells", "1"},
+    {"steps", "1"},
+    {"substeps", "1"},
+    {"time_share", "1"},
+    {"ma_max", "1"},
+    {"ma_paper", "1"},
+    {"re", "1"},
+    {"re_h", "1"},
+    {"mass_drift", "1"},
+    {"tau", "1"},
+    {"cells_per_diameter", "1"},
+    {"grains", "1"},
+    {"bonds", "1"},
+};
+
+void add_solid(const protocol::SolidReport& solid, Json& json) {
+  json["grains"] = {{"left", solid.grains_left}};
+  if (!solid.bonds) return;
+  const auto& [intact, tension, shear, left, lost] = *solid.bonds;
+  json["bonds"] = {
+      {"intact", intact}, {"tension", tension}, {"shear", shear}, {"left", left}, {"lost", lost}};
+}
+
+/// Of each number, and of each group of numbers of one unit.
+Json units(const Json& json) {
+  Json all;
+  for (const auto& [name, value] : json.items()) {
+    if (name == "parameters")
+      for (const auto& [parameter, number] : value.items())
+        all[name][parameter] = unit_of(parameter);
+    else if (value.is_number() || (value.is_object() && name != "versions"))
+      all[name] = unit_of(name);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string describe(const protocol::SolidReport& report) {
+  std::string text;
+  if (report.grains_left > 0) text = fmt::format("{} grains left", report.grains_left);
+  if (!report.bonds) return text;
+  const auto& [intact, tension, shear, left, lost] = *report.bonds;
+  text += fmt::format("{}bonds {} (broken by tension {}, by shear {}", text.empty() ? "" : ", ",
+                      intact, tension, shear);
+  if (left > 0) text += fmt::format("; left with grains {}", left);
+  if (lost > 0) text += fmt::format("; lost {}", lost);
+  return text + ")";
+}
+
+std::string unit_of(const std::string& name) {
+  return kUnits.at(name);
+}
+
 void write_summary(const std::string& folder, const Summary& s) {
-  const nlohmann::ordered_json json{
+  Json json{
       {"scene", s.scene},
       {"set", s.set},
       {"variant", s.variant},
@@ -32,8 +115,10 @@ void write_summary(const std::string& folder, const Summary& s) {
       {"re_h", s.re_h},
       {"mass_drift", s.mass_drift},
       {"parameters", s.parameters},
-      {"results", nlohmann::json::array()},
   };
+  if (s.solid) add_solid(*s.solid, json);
+  json["units"] = units(json);
+  json["results"] = Json::array();
   const std::string path = folder + "/summary.json", part = path + ".part";
   {
     std::ofstream out(part);

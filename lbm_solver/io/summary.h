@@ -2,8 +2,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "protocol/messages.h"
 
 namespace lbm {
 
@@ -25,9 +28,18 @@ struct Summary {
   double re = 0.0, re_h = 0.0;
   double mass_drift = 0.0;                   ///< relative
   std::map<std::string, double> parameters;  ///< what a reader needs to interpret the results
+  /// Grains that left and what became of bonds, where the solid tells it.
+  std::optional<protocol::SolidReport> solid;
 };
 
-/// Writes `folder`/summary.json, whole or not at all.
+/// Grains that have left and bonds, in words; empty where there is nothing to tell.
+std::string describe(const protocol::SolidReport& report);
+
+/// Unit of a number of the summary or of its parameters; "1" for one without.
+/// @throws std::out_of_range  the table in summary.cpp lacks it
+std::string unit_of(const std::string& name);
+
+/// Writes `folder`/summary.json, whole or not at all; "units" there names the unit of each number.
 void write_summary(const std::string& folder, const Summary& summary);
 
 }  // namespace lbm

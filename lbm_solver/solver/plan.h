@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lbm_solver/base/scene.h"
+#include "lbm_solver/solver/block_loads.h"
 #include "lbm_solver/solver/fluid.h"
 
 namespace lbm {
@@ -62,5 +63,8 @@ inline Fluid make_fluid(const Scene& scene, const Plan& plan) {
 
 /// The scene's obstacles that are discs or spheres, in lattice units, ids -1, -2, …
 std::vector<Body> obstacle_bodies(const Scene& scene, const Plan& plan);
+
+/// The scene's obstacles that are blocks, in its order. @throws InputError  one is off the cells
+std::vector<CellBox> obstacle_blocks(const Scene& scene, const Plan& plan);
 
 }  // namespace lbm

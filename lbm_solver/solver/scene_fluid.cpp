@@ -67,8 +67,9 @@ void add_pressure_jump(const Plan& p, int axis, double jump, Fluid& fluid) {
   }
 }
 
-void add_block(const Scene& s, const Plan& p, const ObstacleScene& o, Fluid& fluid) {
-  Cell3 from{0, 0, 0}, to{0, 0, 1};
+CellBox cells_of(const Scene& s, const Plan& p, const ObstacleScene& o) {
+  CellBox box;
+  auto& [from, to] = box;
   for (int axis = 0; axis < s.box.dimension; ++axis) {
     from[axis] = border(s, p, o.from[axis], axis, "obstacle.from");
     to[axis] = border(s, p, o.to[axis], axis, "obstacle.to");
@@ -78,7 +79,7 @@ void add_block(const Scene& s, const Plan& p, const ObstacleScene& o, Fluid& flu
                                    o.from[axis], o.to[axis], "xyz"[axis]),
                        "give its lower and upper corner");
   }
-  fluid.add_wall(from, to);
+  return box;
 }
 
 /// Velocity and pressure deviation of the initial state, lattice units, at a place in units of the
@@ -121,14 +122,20 @@ std::vector<Body> obstacle_bodies(const Scene& s, const Plan& p) {
   return bodies;
 }
 
+std::vector<CellBox> obstacle_blocks(const Scene& s, const Plan& p) {
+  std::vector<CellBox> blocks;
+  for (const ObstacleScene& o : s.obstacles)
+    if (!o.round) blocks.push_back(cells_of(s, p, o));
+  return blocks;
+}
+
 Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
   Fluid fluid(ranks, p.kernel);
   for (const BoundaryScene& b : s.boundaries) add_boundary(s, p, b, fluid);
   for (int axis = 0; axis < s.box.dimension; ++axis)
     if (s.box.pressure_jump[axis] != 0.0)
       add_pressure_jump(p, axis, s.box.pressure_jump[axis], fluid);
-  for (const ObstacleScene& o : s.obstacles)
-    if (!o.round) add_block(s, p, o, fluid);
+  for (const CellBox& block : obstacle_blocks(s, p)) fluid.add_wall(block.from, block.to);
   if (p.scheme != known_schemes().front())
     fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(), s.numerics.spring_stiffness));
   if (s.fluid.body_force_ramp > 0.0)

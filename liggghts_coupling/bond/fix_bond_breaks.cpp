@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <tuple>
 #include <vector>
@@ -21,9 +23,19 @@
 namespace dem {
 namespace {
 
-constexpr const char* kColumns = "step,time,id1,id2,mode,force,x,y,z,nx,ny,nz\n";
+constexpr const char* kColumns =
+    "step [1],time [s],id1 [1],id2 [1],mode,force [N],x [m],y [m],z [m],nx [1],ny [1],nz [1]\n";
 
-/// Lines of an earlier run before a step.
+/// A line with the time that belongs to its step.
+std::string timed(const std::string& line, long first_step, double dt) {
+  const std::size_t step_end = line.find(','), time_end = line.find(',', step_end + 1);
+  if (time_end == std::string::npos) return line;
+  const long step = std::strtol(line.c_str(), nullptr, 10);
+  return fmt::format("{},{}{}", step, static_cast<double>(step - first_step) * dt,
+                     line.substr(time_end));
+}
+
+/// Lines of an earlier run up to a step.
 std::string kept_lines(const std::string& path, long before) {
   std::ifstream file(path);
   std::string line, kept;
@@ -46,7 +58,7 @@ std::string text(const BreakEvent& e) {
 FixBondBreaks::FixBondBreaks(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     : Fix(lammps, narg, arg) {
   vector_flag = 1;
-  size_vector = 9;
+  size_vector = 11;
   global_freq = 1;
   extvector = 1;
   for (int k = 3; k + 1 < narg; k += 2) {
@@ -67,12 +79,22 @@ int FixBondBreaks::setmask() {
 }
 
 void FixBondBreaks::init() {
-  if (comm->me == 0 && !file_) open();
+  if (comm->me != 0 || file_) return;
+  open(update->ntimestep > 0 ? kept_lines(path_, static_cast<long>(update->ntimestep)) : "");
 }
 
-void FixBondBreaks::open() {
-  const std::string kept =
-      update->ntimestep > 0 ? kept_lines(path_, static_cast<long>(update->ntimestep)) : "";
+/// The coupled run has begun since: what was written before it lies before the time 0.
+void FixBondBreaks::move_times() {
+  const long first_step = BondBook::instance().first_step;
+  if (first_step == first_step_ || !file_) return;
+  first_step_ = first_step;
+  std::istringstream before(kept_lines(path_, std::numeric_limits<long>::max()));
+  std::string line, lines;
+  while (std::getline(before, line)) lines += timed(line, first_step, update->dt) + "\n";
+  open(lines);
+}
+
+void FixBondBreaks::open(const std::string& kept) {
   // under another name, or a kill at this moment would lose the lines of the run before
   const std::string part = path_ + ".part";
   file_.reset(std::fopen(part.c_str(), "w"));
@@ -93,6 +115,7 @@ void FixBondBreaks::end_of_step() {
 
 /// Gathers the events of all ranks; in the file they are in the order of steps and ids.
 void FixBondBreaks::write() {
+  move_times();
   std::vector<BreakEvent>& mine = BondBook::instance().events;
   const int bytes = static_cast<int>(mine.size() * sizeof(BreakEvent));
   std::vector<int> sizes(comm->nprocs), starts(comm->nprocs);
@@ -121,31 +144,34 @@ void FixBondBreaks::write() {
 
 void FixBondBreaks::check_counts() {
   const BondBook& book = BondBook::instance();
-  const long mine[3] = {book.created, book.intact, book.broken_tension + book.broken_shear};
+  const long mine[3] = {book.tally.created, book.intact, book.tally.gone()};
   long all[3];
   MPI_Allreduce(mine, all, 3, MPI_LONG, MPI_SUM, world);
   if (all[0] != all[1] + all[2])
     error->fix_error(
         FLERR, this,
         fmt::format(
-            "step {}: {} bonds were created, but {} are intact and {} broken: {} were lost "
-            "without breaking (did a particle leave the box, or move on by more than the skin of "
-            "the neighbour list in a step?)",
+            "step {}: {} bonds were created, but {} are intact and {} broken or gone with a "
+            "particle: {} were lost without breaking (did a fix take out particles during a run, "
+            "or "
+            "did one move on by more than the skin of the neighbour list in a step?)",
             static_cast<long>(update->ntimestep), all[0], all[1], all[2], all[0] - all[1] - all[2])
             .c_str());
 }
 
 double FixBondBreaks::compute_vector(int n) {
   const BondBook& b = BondBook::instance();
-  const std::array<double, 9> values{static_cast<double>(b.intact),
-                                     static_cast<double>(b.broken_tension),
-                                     static_cast<double>(b.broken_shear),
-                                     static_cast<double>(b.created),
-                                     b.energy.elastic,
-                                     b.energy.friction,
-                                     b.energy.damping,
-                                     b.energy.released,
-                                     b.energy.stiffness_change};
+  const std::array<double, 11> values{static_cast<double>(b.intact),
+                                      static_cast<double>(b.tally.tension),
+                                      static_cast<double>(b.tally.shear),
+                                      static_cast<double>(b.tally.created),
+                                      b.energy.elastic,
+                                      b.energy.friction,
+                                      b.energy.damping,
+                                      b.energy.released,
+                                      b.energy.stiffness_change,
+                                      static_cast<double>(b.tally.left),
+                                      static_cast<double>(b.tally.lost)};
   double all = 0.0;
   MPI_Allreduce(&values[n], &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;

@@ -3,35 +3,64 @@
 
 #include <comm.h>
 #include <error.h>
+#include <fix_contact_history.h>
 #include <fmt/format.h>
 #include <force.h>
-#include <pair.h>
+#include <modify.h>
+#include <pair_gran.h>
 #include <update.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <vector>
 
 #include "liggghts_coupling/bond/arguments.h"
 #include "liggghts_coupling/bond/bond_book.h"
+#include "liggghts_coupling/bond/leaving.h"
 #include "liggghts_coupling/bond/pair_property.h"
 #include "protocol/input_file.h"
 
 namespace dem {
 namespace {
 
-/// What a restart file keeps, as doubles.
-constexpr int kKept = 7;  // done, spread, seed, largest gap, created, broken by tension, by shear
+/// What a restart file keeps, as doubles: kLayout, done, spread, seed, largest gap, BondTally.
+constexpr int kKept = 10;
+constexpr double kLayout = 2.0;
+constexpr std::array kCounts{&BondTally::created, &BondTally::tension, &BondTally::shear,
+                             &BondTally::left, &BondTally::lost};
+static_assert(kKept == 5 + kCounts.size());
+
+long sum(long mine, MPI_Comm world) {
+  long all = 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_LONG, MPI_SUM, world);
+  return all;
+}
+
+/// Ids that any process names, on all of them.
+std::set<int> everywhere(const std::vector<int>& mine, MPI_Comm world) {
+  int ranks = 0, count = static_cast<int>(mine.size());
+  MPI_Comm_size(world, &ranks);
+  std::vector<int> counts(ranks), starts(ranks);
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  for (int r = 1; r < ranks; ++r) starts[r] = starts[r - 1] + counts[r - 1];
+  std::vector<int> all(starts.back() + counts.back());
+  MPI_Allgatherv(mine.data(), count, MPI_INT, all.data(), counts.data(), starts.data(), MPI_INT,
+                 world);
+  return {all.begin(), all.end()};
+}
 
 }  // namespace
 
 FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     : Fix(lammps, narg, arg) {
   restart_global = 1;
-  BondBook& book = BondBook::instance();
-  BondRequest request;
+  BondRequest request{.fix = id};
+  double spread = 0.0;
+  unsigned long seed = 0;
   bool gap = false;
   for (int k = 3; k < narg;) {
     const std::string word = arg[k];
@@ -56,13 +85,13 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
       k += 2;
     } else if (word == "spread") {
       need(1);
-      book.spread = argument<double>(error, this, word, arg[k + 1]);
-      if (book.spread < 0.0 || book.spread >= 1.0)
+      spread = argument<double>(error, this, word, arg[k + 1]);
+      if (spread < 0.0 || spread >= 1.0)
         error->fix_error(FLERR, this, "spread is at least 0 and below 1");
       k += 2;
     } else if (word == "seed") {
       need(1);
-      book.seed = static_cast<unsigned long>(argument<int>(error, this, word, arg[k + 1]));
+      seed = static_cast<unsigned long>(argument<int>(error, this, word, arg[k + 1]));
       k += 2;
     } else {
       error->fix_error(
@@ -72,7 +101,33 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
   }
   if (!gap || request.gap < 0.0)
     error->fix_error(FLERR, this, "needs 'gap G', the largest gap in m, at least 0");
-  book.request = request;
+  agree_on_spread(spread, seed);
+  BondBook::instance().requests.push_back(request);
+}
+
+FixBondCreate::~FixBondCreate() {
+  std::erase_if(BondBook::instance().requests, [&](const BondRequest& r) { return r.fix == id; });
+}
+
+int FixBondCreate::setmask() {
+  return LAMMPS_NS::FixConst::PRE_EXCHANGE | LAMMPS_NS::FixConst::POST_RUN;
+}
+
+/// The strength of a bond is found anew from both at every step: they hold for all bonds.
+void FixBondCreate::agree_on_spread(double spread, unsigned long seed) {
+  BondBook& book = BondBook::instance();
+  if (!book.has_spread) {
+    book.spread = spread;
+    book.seed = seed;
+    book.has_spread = true;
+  }
+  if (book.spread == spread && book.seed == seed) return;
+  error->fix_error(
+      FLERR, this,
+      fmt::format("has spread {} seed {}, an earlier fix bond/create has spread {} seed {}: they "
+                  "hold for all bonds; give all of these fixes the same",
+                  spread, seed, book.spread, book.seed)
+          .c_str());
 }
 
 std::set<std::pair<long, long>> FixBondCreate::read_list(const char* path) {
@@ -94,36 +149,83 @@ void FixBondCreate::init() {
     error->fix_error(FLERR, this, "needs pair_style gran model bond/contact");
 }
 
+bool FixBondCreate::is_first() const {
+  return modify->find_fix_style_strict(style, 0) == this;
+}
+
+/// Counts the bonds of particles that the coming exchange takes out of the box. LIGGGHTS keeps the
+/// pairs of each particle, on its process, beside the lists that forces are computed from.
+void FixBondCreate::count_leaving() {
+  auto* pair = dynamic_cast<LAMMPS_NS::PairGran*>(force->pair_match("gran", 1));
+  if (!is_first() || !pair || !pair->get_fix_history()) return;
+  std::vector<int> mine = leaving(*lmp, ~0);
+  if (sum(static_cast<long>(mine.size()), world) == 0) return;
+  LAMMPS_NS::FixContactHistory& pairs = *pair->get_fix_history();
+  pairs.setup_pre_exchange();  // brings them up to date; to do so twice changes nothing
+  BondBook& book = BondBook::instance();
+  std::vector<int> ids;
+  for (const int i : mine) ids.push_back(atom->tag[i]);
+  const std::set<int> gone = everywhere(ids, world);
+  for (const int i : mine)
+    for (int n = 0; n < pairs.n_partner(i); ++n) {
+      const int partner = pairs.partner(i, n);
+      const bool bonded = pairs.contacthistory(i, n)[book.column] != 0.0;
+      // where both leave, one of them counts
+      if (bonded && (!gone.contains(partner) || atom->tag[i] < partner)) ++book.tally.left;
+    }
+}
+
+/// Bonds that have vanished between two runs: with particles that the script has taken out.
+void FixBondCreate::count_lost() const {
+  BondBook& book = BondBook::instance();
+  const BondTally& t = book.tally;
+  const long lost = sum(t.created - book.intact - t.gone(), world);
+  if (lost <= 0 || comm->me != 0) return;
+  book.tally.lost += lost;
+  fmt::print(stderr,
+             "liggghts | warning | {} bonds were lost between two runs, with particles that the "
+             "script took out or moved away\n",
+             lost);
+}
+
 /// The forces of the run's first step have been computed, and with them the bonds made.
 void FixBondCreate::setup(int) {
+  const bool later_run = std::exchange(between_runs_, false);
+  if (later_run && is_first()) count_lost();
   if (done_) return;
   done_ = true;
-  BondBook& book = BondBook::instance();
-  int ignored = book.request ? 1 : 0;  // the bonds' pair styles take the wish
+  const BondRequest& request = *BondBook::instance().request_of(id);
+  int ignored = request.open ? 1 : 0;  // the bonds' pair styles take the wish
   MPI_Allreduce(MPI_IN_PLACE, &ignored, 1, MPI_INT, MPI_MIN, world);
   if (ignored)
     error->fix_error(FLERR, this,
                      "needs pair_style gran model bond/contact or bond/parallel; this one makes no "
                      "bonds");
-  long all = 0;
-  MPI_Allreduce(&book.created, &all, 1, MPI_LONG, MPI_SUM, world);
-  if (wanted_ >= 0 && all != wanted_)
+  const long made = sum(request.made, world), found = sum(request.found, world);
+  if (wanted_ >= 0 && found != wanted_)
     error->fix_error(FLERR, this,
                      fmt::format("{} of the {} listed pairs are no neighbours within the gap; give "
                                  "a larger gap or correct the list",
-                                 wanted_ - all, wanted_)
+                                 wanted_ - found, wanted_)
                          .c_str());
-  if (comm->me == 0) {
-    if (all == 0)
-      fmt::print(stderr,
-                 "liggghts | warning | fix bond/create {} has made no bonds: no two particles are "
-                 "within its gap; raise it, or let the packing come to rest before\n",
-                 id);
-    const std::string text = fmt::format("bonds created: {}\n", all);
-    for (FILE* out : {screen, logfile})
-      if (out) std::fputs(text.c_str(), out);
-  }
-  if (all > 0) warn_of_long_step();
+  tell(made, found);
+  if (made > 0) warn_of_long_step();
+}
+
+/// @param made, found  bonds, and pairs that it wants, of all processes
+void FixBondCreate::tell(long made, long found) const {
+  const long all = sum(BondBook::instance().tally.created, world);
+  if (comm->me != 0) return;
+  if (found == 0)
+    fmt::print(stderr,
+               "liggghts | warning | fix bond/create {} has made no bonds: no two particles {}are "
+               "within its gap; raise it, or let the packing come to rest before\n",
+               id, BondBook::instance().request_of(id)->types ? "of its types " : "");
+  std::string text = fmt::format("bonds created: {} by fix bond/create {}", made, id);
+  if (found > made) text += fmt::format(" ({} of its pairs were bonded before)", found - made);
+  if (all != made) text += fmt::format("; {} in all", all);
+  for (FILE* out : {screen, logfile})
+    if (out) std::fputs((text + "\n").c_str(), out);
 }
 
 /// Bonds that are too stiff for the step break by themselves: paper A Eq 8, without a safety
@@ -147,37 +249,35 @@ void FixBondCreate::warn_of_long_step() const {
 
 void FixBondCreate::write_restart(FILE* file) {
   const BondBook& book = BondBook::instance();
-  long mine[3] = {book.created, book.broken_tension, book.broken_shear}, all[3];
-  MPI_Reduce(mine, all, 3, MPI_LONG, MPI_SUM, 0, world);
   double gap = 0.0;
   MPI_Reduce(&book.largest_gap, &gap, 1, MPI_DOUBLE, MPI_MAX, 0, world);
+  std::array<double, kKept> kept{kLayout, done_ ? 1.0 : 0.0, book.spread,
+                                 static_cast<double>(book.seed), gap};
+  for (std::size_t k = 0; k < kCounts.size(); ++k)
+    kept[5 + k] = static_cast<double>(sum(book.tally.*kCounts[k], world));
   if (comm->me != 0) return;
-  const double kept[kKept] = {done_ ? 1.0 : 0.0,
-                              book.spread,
-                              static_cast<double>(book.seed),
-                              gap,
-                              static_cast<double>(all[0]),
-                              static_cast<double>(all[1]),
-                              static_cast<double>(all[2])};
   const int size = sizeof kept;
   std::fwrite(&size, sizeof size, 1, file);
-  std::fwrite(kept, sizeof kept, 1, file);
+  std::fwrite(kept.data(), size, 1, file);
 }
 
 void FixBondCreate::restart(char* buffer) {
-  double kept[kKept];
-  std::memcpy(kept, buffer, sizeof kept);
-  BondBook& book = BondBook::instance();
-  done_ = kept[0] != 0.0;
+  std::array<double, kKept> kept;
+  std::memcpy(kept.data(), buffer, sizeof kept[0]);
+  if (kept[0] != kLayout)
+    error->fix_error(FLERR, this,
+                     "the restart file is of another version of this fix; start again without it");
+  std::memcpy(kept.data(), buffer, sizeof kept);
+  done_ = kept[1] != 0.0;
   if (!done_) return;
-  book.request.reset();
-  book.spread = kept[1];
-  book.seed = static_cast<unsigned long>(kept[2]);
-  book.largest_gap = kept[3];
+  BondBook& book = BondBook::instance();
+  book.request_of(id)->open = false;
+  book.spread = kept[2];
+  book.seed = static_cast<unsigned long>(kept[3]);
+  book.largest_gap = kept[4];
   // sums over all ranks: one keeps them
-  book.created = comm->me == 0 ? static_cast<long>(kept[4]) : 0;
-  book.broken_tension = comm->me == 0 ? static_cast<long>(kept[5]) : 0;
-  book.broken_shear = comm->me == 0 ? static_cast<long>(kept[6]) : 0;
+  for (std::size_t k = 0; k < kCounts.size(); ++k)
+    book.tally.*kCounts[k] = comm->me == 0 ? static_cast<long>(kept[5 + k]) : 0;
 }
 
 }  // namespace dem

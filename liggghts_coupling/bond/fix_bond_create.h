@@ -17,22 +17,36 @@ namespace dem {
 /// Bonds, once, at the beginning of the next run, every pair of particles whose gap is at most G
 /// [m]: of all types or of two, or only the pairs of ids in a file (two a line). Strengths spread
 /// uniformly by the part S about their value. After a restart the same line makes nothing anew: the
-/// restart file says that it was done, and with what spread.
+/// restart file says that it was done, and with what spread. Several of these fixes add up; a pair
+/// that two of them want is bonded by the first. Their strengths have one spread and seed.
+///
+/// The first of them also counts the bonds of particles that leave the box.
 class FixBondCreate final : public LAMMPS_NS::Fix {
  public:
   FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
 
-  int setmask() override { return 0; }
+  ~FixBondCreate() override;
+
+  int setmask() override;
   void init() override;
+  void setup_pre_exchange() override { count_leaving(); }
+  void pre_exchange() override { count_leaving(); }
   void setup(int vflag) override;
+  void post_run() override { between_runs_ = true; }
   void write_restart(FILE* file) override;
   void restart(char* buffer) override;
 
  private:
   std::set<std::pair<long, long>> read_list(const char* path);
+  void agree_on_spread(double spread, unsigned long seed);
+  bool is_first() const;
+  void count_leaving();
+  void count_lost() const;
+  void tell(long made, long found) const;
   void warn_of_long_step() const;
-  bool done_ = false;  ///< bonds were made, in this run or before the restart
-  long wanted_ = -1;   ///< pairs of the list
+  bool done_ = false;          ///< bonds were made, in this run or before the restart
+  bool between_runs_ = false;  ///< the script has had time to take particles out
+  long wanted_ = -1;           ///< pairs of the list
 };
 
 }  // namespace dem

@@ -69,6 +69,7 @@ class BondModel : protected Pointers {
     if (is_wall)
       fail(std::string(Kind::name) + " is no wall model; use fix wall/gran model hooke/stiffness");
     bonded_ = history->add_history_value("bonded", "0");
+    BondBook::instance().column = bonded_;
     history->add_history_value("bondRestOverlap", "0");
     // "1": seen from the other particle, with the other sign
     for (const char* name : {"shearForceX", "shearForceY", "shearForceZ"})
@@ -121,7 +122,8 @@ class BondModel : protected Pointers {
     book.listed.clear();
   }
   void endPass(SurfacesIntersectData& data, ForceData&, ForceData&) {
-    if (data.computeflag) BondBook::instance().request.reset();
+    if (!data.computeflag) return;
+    for (dem::BondRequest& request : BondBook::instance().requests) request.open = false;
   }
 
   void surfacesIntersect(SurfacesIntersectData& data, ForceData& on_i, ForceData& on_j) {
@@ -163,7 +165,8 @@ class BondModel : protected Pointers {
   /// or LIGGGHTS would drop the bond without a word.
   void reserve_range(PropertyRegistry& registry) {
     const BondBook& book = BondBook::instance();
-    const double gap = std::max(book.request ? book.request->gap : 0.0, book.largest_gap);
+    double gap = book.largest_gap;
+    for (const dem::BondRequest& request : book.requests) gap = std::max(gap, request.gap);
     double stretch = 0.0;
     int worst[2] = {1, 1};
     for (int a = 1; a <= atom->ntypes; ++a)
@@ -194,12 +197,38 @@ class BondModel : protected Pointers {
             domain->prd[k], "xyz"[k], 2.0 * meet));
   }
 
-  /// A new bond is asked for between the two. @param overlap  only its sign, in a gap, matters
+  /// Calls `each` with the wishes of which one asks for a bond between the two.
+  /// @param overlap  only its sign, in a gap, matters
+  template <class Each>
+  bool for_wishes(const SurfacesIntersectData& d, double overlap, Each&& each) const {
+    bool any = false;
+    if (!d.computeflag) return any;
+    for (dem::BondRequest& request : BondBook::instance().requests) {
+      if (!request.open) continue;
+      const double exact = overlap < 0.0 ? d.radsum - std::sqrt(d.rsq) : overlap;
+      if (!request.wants(atom->tag[d.i], atom->tag[d.j], d.itype, d.jtype, exact)) continue;
+      each(request);
+      any = true;
+    }
+    return any;
+  }
   bool wanted(const SurfacesIntersectData& d, double overlap) const {
-    const BondBook& book = BondBook::instance();
-    if (!book.request || !d.computeflag) return false;
-    const double exact = overlap < 0.0 ? d.radsum - std::sqrt(d.rsq) : overlap;
-    return book.request->wants(atom->tag[d.i], atom->tag[d.j], d.itype, d.jtype, exact);
+    return for_wishes(d, overlap, [](const dem::BondRequest&) {});
+  }
+
+  /// Bonds a pair that some fix bond/create asks for. @param counted  by this process
+  void bond_where_wanted(dem::PairMemory& memory, const SurfacesIntersectData& d,
+                         const dem::ContactLaw& contact, const dem::BondLaw& bond, double overlap,
+                         bool counted) {
+    for_wishes(d, overlap, [&](dem::BondRequest& request) {
+      request.found += counted;
+      if (memory.bonded) return;
+      dem::make_bond(memory, contact, bond, overlap);
+      BondBook& book = BondBook::instance();
+      book.largest_gap = std::max(book.largest_gap, -overlap);
+      request.made += counted;
+      book.tally.created += counted;
+    });
   }
 
   void forget(SurfacesIntersectData& d) {
@@ -273,12 +302,7 @@ class BondModel : protected Pointers {
     const dem::BondLaw bond = bond_law(d);
     dem::PairMemory memory = remembered(d);
     const bool counted = d.computeflag && (d.j < atom->nlocal || atom->tag[d.i] < atom->tag[d.j]);
-    if (!memory.bonded && wanted(d, overlap)) {
-      dem::make_bond(memory, contact, bond, overlap);
-      BondBook& book = BondBook::instance();
-      book.largest_gap = std::max(book.largest_gap, -overlap);
-      if (counted) ++book.created;
-    }
+    bond_where_wanted(memory, d, contact, bond, overlap, counted);
     const dem::PairMotion m = motion(d, arms);
     const bool advance = d.computeflag && d.shearupdate;
     const dem::PairResponse r = dem::respond(memory, contact, bond, m, advance);
@@ -319,10 +343,10 @@ class BondModel : protected Pointers {
       }
     }
     if (r.broken == dem::Break::None || !advance) return;
-    ++(r.broken == dem::Break::Tension ? book.broken_tension : book.broken_shear);
+    ++(r.broken == dem::Break::Tension ? book.tally.tension : book.tally.shear);
     const long a = atom->tag[d.i], b = atom->tag[d.j];
     dem::BreakEvent event{static_cast<long>(update->ntimestep),
-                          static_cast<double>(update->ntimestep) * update->dt,
+                          static_cast<double>(update->ntimestep - book.first_step) * update->dt,
                           std::min(a, b),
                           std::max(a, b),
                           r.broken,
@@ -366,6 +390,12 @@ namespace dem {
 BondBook& BondBook::instance() {
   static BondBook book;
   return book;
+}
+
+BondRequest* BondBook::request_of(const std::string& fix) {
+  const auto found = std::find_if(requests.begin(), requests.end(),
+                                  [&](const BondRequest& r) { return r.fix == fix; });
+  return found == requests.end() ? nullptr : &*found;
 }
 
 void register_bonds() {

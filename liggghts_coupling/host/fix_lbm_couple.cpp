@@ -12,8 +12,10 @@
 #include <update.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "liggghts_coupling/bond/bond_book.h"
+#include "liggghts_coupling/bond/leaving.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/script_checks.h"
 #include "liggghts_coupling/host/solid_hello.h"
@@ -36,6 +38,7 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
         "no fluid program was started beside liggghts; start: mpirun -np 1 lbm scene.toml : -np 1 "
         "liggghts -in FILE");
   nevery = 1;
+  restart_global = 1;
   restart_peratom = 1;
   create_attribute = 1;
   peratom_flag = 1;
@@ -111,6 +114,7 @@ void FixLbmCouple::init() {
   if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
     fail("needs spheres; use atom_style granular");
   if (modify->n_fixes_style("lbm/couple") != 1) fail("only one fix lbm/couple may exist");
+  if (!set_up_) BondBook::instance().list_wanted = true;  // for the picture at t = 0
   const int here = modify->my_index(this);
   held_still_ = 0;
   for (int i = 0; i < modify->nfix; ++i) {
@@ -125,6 +129,7 @@ void FixLbmCouple::init() {
 
 /// Before LIGGGHTS looks for neighbours, which may take it minutes.
 void FixLbmCouple::setup_pre_exchange() {
+  count_leaving();
   if (settling_again_) return;
   const ScriptChecks checks(lmp);
   checks.refuse_clumps();
@@ -175,6 +180,7 @@ void FixLbmCouple::begin() {
   coupling.session->agree(mine);
   coupling.agreed = set_up_ = true;
   first_step_ = step_ = update->ntimestep;
+  BondBook::instance().first_step = static_cast<long>(first_step_ - interval_ * substeps_);
   time_step_ = update->dt;
   send_states();
   // The first interval is serial in either schedule, unless a checkpoint has the loads to begin
@@ -274,11 +280,19 @@ void FixLbmCouple::gather() {
   }
 }
 
-/// What there is to say about bonds; nothing where none was ever made.
-std::optional<protocol::BondReport> FixLbmCouple::bond_report() {
+/// Particles of which the fluid knows that leave the box.
+void FixLbmCouple::count_leaving() {
+  if (set_up_) left_ += static_cast<std::int64_t>(leaving(*lmp, groupbit).size());
+}
+
+/// What there is to say of particles that have left and of bonds; of these nothing where this
+/// process never had any.
+protocol::SolidReport FixLbmCouple::report() const {
+  protocol::SolidReport report{.grains_left = left_};
   const BondBook& book = BondBook::instance();
-  if (book.created == 0 && book.intact == 0) return std::nullopt;
-  protocol::BondReport report{book.intact, book.broken_tension + book.broken_shear, {}};
+  const BondTally& t = book.tally;
+  if (t.created + t.gone() + book.intact == 0) return report;
+  report.bonds = {book.intact, t.tension, t.shear, t.left, t.lost};
   if (!book.list_wanted) return report;
   for (const auto& [a, b] : book.listed) report.list.push_back({a, b, 0});
   for (const BreakEvent& e : book.broken)
@@ -296,7 +310,7 @@ void FixLbmCouple::send_states() {
   const auto corner = [](const double* x) { return protocol::Vec3{x[0], x[1], x[2]}; };
   coupling.session->set({update->dt, corner(domain->boxlo), corner(domain->boxhi)});
   coupling.session->send({interval_, static_cast<double>(interval_) * interval, flags}, states_,
-                         shapes_, bond_report());
+                         shapes_, report());
   coupling.over = stop_asked_;
   underway_ = !stop_asked_;
   if (coupling.over && comm->me == 0 && logfile)
@@ -367,6 +381,20 @@ void FixLbmCouple::forward(std::vector<protocol::Load>& orphans, bool add_change
     const int i = atom->map(static_cast<int>(load.id));
     if (i >= 0 && i < atom->nlocal) hold(i, load, add_change);
   }
+}
+
+// ---- what a restart file keeps beside the particles --------------------------------------------
+
+void FixLbmCouple::write_restart(FILE* file) {
+  std::int64_t all = 0;
+  MPI_Reduce(&left_, &all, 1, MPI_INT64_T, MPI_SUM, 0, world);
+  if (comm->me != 0) return;
+  const int size = sizeof all;
+  std::fwrite(&size, sizeof size, 1, file);
+  std::fwrite(&all, size, 1, file);
+}
+void FixLbmCouple::restart(char* buffer) {
+  if (comm->me == 0) std::memcpy(&left_, buffer, sizeof left_);  // a sum over all ranks
 }
 
 // ---- held loads travel with their particles ---------------------------------------------------

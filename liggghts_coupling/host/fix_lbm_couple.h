@@ -30,11 +30,14 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   int setmask() override;
   void init() override;
   void setup_pre_exchange() override;
+  void pre_exchange() override { count_leaving(); }
   void setup(int vflag) override;
   void post_force(int vflag) override;
   void end_of_step() override;
   void post_run() override;
 
+  void write_restart(FILE* file) override;
+  void restart(char* buffer) override;
   void grow_arrays(int n) override;
   void copy_arrays(int from, int to, int is_delete) override;
   void set_arrays(int i) override;
@@ -55,7 +58,8 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void parse(int narg, char** arg);
   void begin_recording() const;
   void gather();
-  static std::optional<protocol::BondReport> bond_report();
+  void count_leaving();
+  protocol::SolidReport report() const;
   protocol::Hello hello() const;
   void begin();
   void go_on() const;
@@ -81,6 +85,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   double time_step_ = 0.0;                       ///< [s], of all runs
   double waited_before_ = 0.0;                   ///< [s], until the first step
   std::int64_t interval_ = 0;
+  std::int64_t left_ = 0;  ///< particles, since the beginning of the coupled run, of this process
   bool stop_asked_ = false, checkpoint_asked_ = false;
   bool overlapped_ = false;  ///< loads are taken at the end of their interval
   bool underway_ = false;    ///< loads of the states sent last have not been taken

@@ -6,6 +6,7 @@
 #include <lammps.h>
 #include <mpi.h>
 #include <sys/mman.h>
+#include <universe.h>
 #include <variable.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/mpi_guards.h"
 #include "liggghts_coupling/host/register_styles.h"
+#include "liggghts_coupling/host/screen_ear.h"
 #include "liggghts_coupling/host/script_names.h"
 #include "protocol/input_file.h"
 #include "protocol/program.h"
@@ -88,6 +90,9 @@ void check_script(const Arguments& arguments) {
 struct Output {
   std::string script, log, screen;
   LAMMPS_NS::LAMMPS* lammps = nullptr;
+  ScreenEar ear;
+
+  void listen();
 
   std::string reason();
 };
@@ -95,7 +100,8 @@ struct Output {
 /// Why LIGGGHTS has ended itself. Of a variable that is not there, it does not say the name.
 std::string Output::reason() {
   std::fflush(nullptr);  // LIGGGHTS has not
-  const std::string found = protocol::last_error_line({log, screen});
+  const std::string found = without_source(
+      ear.last_error().empty() ? protocol::last_error_line({log, screen}) : ear.last_error());
   const std::string said = found.empty() ? "LIGGGHTS stopped with an error; see its output" : found;
   // a variable that cannot be read ends it once more, and leads here again
   LAMMPS_NS::LAMMPS* const one = std::exchange(lammps, nullptr);
@@ -112,8 +118,18 @@ std::string Output::reason() {
                      said, fmt::join(undefined, ", "));
 }
 
+/// Hears what LIGGGHTS says from here on. What kept its screen until now is no longer needed.
+void Output::listen() {
+  std::FILE* const before = lammps->screen;
+  std::FILE* const stream = ear.listen(screen.empty() ? before : nullptr);
+  if (!stream) return;
+  lammps->screen = lammps->universe->uscreen = stream;
+  if (!screen.empty() && before) std::fclose(before);
+  screen.clear();
+}
+
 /// With `-screen none` LIGGGHTS would say nothing of an error on one rank, which its log has not:
-/// it writes to memory instead.
+/// it writes to memory instead, until it is there and we can listen.
 std::string keep_screen(Arguments& arguments) {
   for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
     if ((arguments[i] != "-screen" && arguments[i] != "-sc") || arguments[i + 1] != "none")
@@ -130,6 +146,7 @@ void run_script(Arguments& arguments, MPI_Comm local, Output& output) {
   register_bonds();
   auto* lammps = new LAMMPS_NS::LAMMPS(static_cast<int>(argv.size()), argv.data(), local);
   output.lammps = lammps;
+  if (Coupling::instance().channel) output.listen();
   register_styles(*lammps);
   if (Coupling::instance().channel)
     protocol::catch_signals();  // after LIGGGHTS set its own handlers
@@ -146,7 +163,8 @@ void run_script(Arguments& arguments, MPI_Comm local, Output& output) {
 void run(Arguments& arguments) {
   Coupling& coupling = Coupling::instance();
   coupling.world = protocol::connect(protocol::Role::Solid);
-  Output output{.log = option(arguments, "-log", "-l")};
+  // never freed: LIGGGHTS may speak until the process has ended
+  Output& output = *new Output{.log = option(arguments, "-log", "-l")};
   if (output.log.empty()) output.log = "log.liggghts";
   guard_mpi(coupling.world.local, [&output] { return output.reason(); });
   if (coupling.world.coupled()) {

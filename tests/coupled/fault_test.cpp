@@ -385,4 +385,37 @@ TEST(Launch, AStranger) {
              1, {"liggghts | error | rank(s) 0 of this MPI job did not say"});
 }
 
+/// Whatever the screen is: what LIGGGHTS says of its end reaches the fluid, without a source file.
+class ReasonOfTheEnd : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Screens, ReasonOfTheEnd,
+                         testing::Values("", "-screen none", "-screen screen.txt"),
+                         [](const auto& info) {
+                           return std::string(info.param).empty()             ? "terminal"
+                                  : std::string(info.param) == "-screen none" ? "none"
+                                                                              : "file";
+                         });
+
+TEST_P(ReasonOfTheEnd, TravelsToTheFluid) {
+  struct End {
+    const char *line, *reason;
+  };
+  for (const auto& [line, reason] :
+       {End{"fix breaks all bond/breaks every 100 file no/such/breaks.csv\n",
+            "fix bond/breaks: no/such/breaks.csv cannot be written; give a file in a folder that "
+            "exists\n"},
+        End{"fix odd all bond/create gap -1\n",
+            "needs 'gap G', the largest gap in m, at least 0\n"}}) {
+    test::SettlingDisc scene;
+    scene.set_script(
+        test::replaced(scene.script(), "fix              fluid", std::string(line) + "fix fluid"));
+    const test::JobResult job = scene.run("", 1, 60.0, GetParam());
+    EXPECT_NE(job.exit_code, 0);
+    const std::size_t said = job.output.find("lbm | error | the solid program stopped: ERROR");
+    ASSERT_NE(said, std::string::npos) << job.output;
+    EXPECT_NE(job.output.find(reason, said), std::string::npos) << job.output;
+    EXPECT_EQ(job.output.find(BPLBM_SOURCE_DIR "/liggghts_coupling"), std::string::npos);
+    EXPECT_EQ(job.output.find("../liggghts_coupling"), std::string::npos) << job.output;
+  }
+}
+
 }  // namespace

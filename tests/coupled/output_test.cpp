@@ -173,4 +173,15 @@ TEST(CommandLine, NumbersAreFinite) {
   }
 }
 
+// The plain command with another folder: what the script writes goes there too.
+TEST(OutputFolderOfTheFluid, IsTheOneOfTheScript) {
+  test::SettlingDisc scene;
+  scene.change_scene("end_time = 0.04", "end_time = 0.002");
+  scene.set_script("print \"told\" file ${out_folder}/told.txt\n" + scene.script());
+  const JobResult job = scene.run("--out elsewhere scene.toml");
+  EXPECT_EQ(job.exit_code, 0) << job.output;
+  EXPECT_EQ(test::read_file(scene.folder() + "/elsewhere/told.txt"), "told\n");
+  EXPECT_FALSE(fs::exists(scene.folder() + "/out"));
+}
+
 }  // namespace

@@ -85,14 +85,12 @@ def draw_errors(axes, run, others, error, label):
 
 
 def draw_bonds(axes, frame, length_unit=1e-2):
-    """Lines between bonded discs: intact green, broken by tension red, by shear blue."""
+    """Lines between bonded discs: intact green, broken by tension red, by shear blue (until the two have parted)."""
     if "bond_state" not in frame:
         return
     ends = frame["bond_ends"].reshape(-1, 2, 2) / length_unit
-    near = np.hypot(*(ends[:, 0] - ends[:, 1]).T) < 0.01 / length_unit
     for state, color, width in ((0, "tab:green", 0.8), (1, "tab:red", 1.4), (2, "tab:blue", 1.4)):
-        chosen = near & (frame["bond_state"] == state)
-        axes.add_collection(LineCollection(ends[chosen], colors=color, linewidths=width))
+        axes.add_collection(LineCollection(ends[frame["bond_state"] == state], colors=color, linewidths=width))
 
 
 def animate(run, name, draw, size, seconds=5.0):

@@ -39,7 +39,7 @@ class Table(dict):
 def read_table(path):
     """Columns of a CSV file of ours: a Table, name -> array of numbers, or of words as the `mode` of a break."""
     with open(path) as file:
-        names = file.readline().strip().split(",")
+        names = [column.split(" [")[0] for column in file.readline().strip().split(",")]
         lines = [line for line in file.read().splitlines() if line]
     if not lines:
         return Table({name: np.zeros(0) for name in names})
@@ -52,7 +52,7 @@ def read_table(path):
 
 def numbers_or_words(column):
     try:
-        return np.array(column, float)
+        return np.array([value or "nan" for value in column], float)  # an empty field is no number
     except ValueError:
         return np.array(column)
 

@@ -108,6 +108,6 @@ def quantity(name, value, unit):
 
 
 def write_table(path, columns):
-    """A CSV file of columns of equal length: dict name -> array."""
+    """A CSV file of columns of equal length: dict "name [unit]" -> array."""
     np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns),
-               comments="", fmt="%.8g")
+               comments="", fmt="%.8g", encoding="utf-8")

@@ -93,6 +93,7 @@ def add_solid_waiting(out):
     path = out / "summary.json"
     summary = json.loads(path.read_text())
     summary["solid_waiting"] = float(found.group(1))
+    summary["units"]["solid_waiting"] = "s"
     path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
     print(f"run | waiting: the fluid {summary['waiting']:.3g} s for the solid, the solid {summary['solid_waiting']:.3g} s for "
           f"the fluid, of {summary['wall_seconds']:.3g} s")

@@ -151,6 +151,29 @@ TEST(OutputOfAFluidAlone, RowsOfObstaclesEndAtTheirTimes) {
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(rows[i][0], 0.1 * (i + 1), 1e-12);
 }
 
+// Obstacles have the numbers of the scene, blocks among them; in steady flow their loads add up to
+// what drives the fluid: rho g × fluid area × depth.
+TEST(OutputOfAFluidAlone, NumbersObstaclesAsTheSceneDoes) {
+  const test::TemporaryFolder folder;
+  const std::string scene =
+      test::replaced(test::replaced(kScene, "end_time = 1.0", "end_time = 30.0"), "[run]",
+                     "[[obstacle]]\nfrom = [0.01, 0.02]\nto = [0.03, 0.05]\n"
+                     "[[obstacle]]\ncentre = [0.07, 0.04]\ndiameter = 0.03\n"
+                     "[[obstacle]]\nfrom = [0.04, 0.0]\nto = [0.05, 0.01]\n[run]");
+  const auto rows = run(folder, scene, "obstacles.csv");
+  ASSERT_GE(rows.size(), 6U);
+  double sum = 0.0;
+  for (int number : {1, 2, 3}) {
+    const auto& row = rows[rows.size() - 4 + number];
+    EXPECT_EQ(row[1], number);
+    EXPECT_GT(row[2], 0.0);
+    sum += row[2];
+  }
+  const double blocks = 0.02 * 0.03 + 0.01 * 0.01;  // in which no force drives; covered cells: 1 %
+  const double drive = 1000.0 * kGravity * (0.1 * 0.08 - blocks);
+  EXPECT_NEAR(sum, drive, 0.01 * drive);
+}
+
 // A run that goes on from a checkpoint, which lies on and between the times of output.
 TEST(OutputOfAFluidAlone, IsTheSameAfterARestart) {
   const std::string obstacle =

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "protocol/errors.h"
 #include "tests/unit/protocol/samples.h"
 
@@ -67,7 +69,7 @@ TEST(Codec, EveryMessageSurvivesARoundTrip) {
 
 TEST(Codec, EmptyBatchesAreLegal) {
   EXPECT_TRUE(decode<StateBatch>(encode(StateBatch{})).states.empty());
-  EXPECT_FALSE(decode<StateBatch>(encode(StateBatch{})).bonds.has_value());
+  EXPECT_FALSE(decode<StateBatch>(encode(StateBatch{})).report.has_value());
   EXPECT_TRUE(decode<LoadBatch>(encode(LoadBatch{})).loads.empty());
 }
 
@@ -118,14 +120,21 @@ TEST(Codec, NamesBothProtocolVersions) {
   }
 }
 
-TEST(Codec, BondsGoWithTheStates) {
+TEST(Codec, WhatASolidReportsGoesWithTheStates) {
   StateBatch batch = test::sample_states(3, 2);
-  batch.bonds = BondReport{17, 4, {{1, 2, 0}, {2, 9, 1}}};
-  const auto back = decode<StateBatch>(encode(batch));
-  ASSERT_TRUE(back.bonds.has_value());
-  EXPECT_EQ(back.bonds->intact, 17);
-  EXPECT_EQ(back.bonds->broken, 4);
-  EXPECT_TRUE(test::same_bits(back.bonds->list, batch.bonds->list));
+  batch.report = SolidReport{6, BondCounts{17, 4, 3, 2, 1}, {{1, 2, 0}, {2, 9, 1}}};
+  auto back = decode<StateBatch>(encode(batch));
+  ASSERT_TRUE(back.report && back.report->bonds);
+  EXPECT_EQ(back.report->grains_left, 6);
+  const BondCounts& b = *back.report->bonds;
+  EXPECT_EQ((std::array{b.intact, b.tension, b.shear, b.left, b.lost}),
+            (std::array<std::int64_t, 5>{17, 4, 3, 2, 1}));
+  EXPECT_TRUE(test::same_bits(back.report->list, batch.report->list));
+  batch.report = SolidReport{2, std::nullopt, {}};
+  back = decode<StateBatch>(encode(batch));
+  ASSERT_TRUE(back.report);
+  EXPECT_EQ(back.report->grains_left, 2);
+  EXPECT_FALSE(back.report->bonds);
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "liggghts_coupling/host/screen_ear.h"
+
+#include <regex>
+
+namespace dem {
+namespace {
+
+constexpr std::size_t kLongestLine = 10'000;  // bytes that are kept
+
+}  // namespace
+
+std::FILE* ScreenEar::listen(std::FILE* screen) {
+  screen_ = screen;
+  cookie_io_functions_t functions{};
+  functions.write = [](void* self, const char* text, std::size_t size) {
+    static_cast<ScreenEar*>(self)->take(text, size);
+    return static_cast<ssize_t>(size);
+  };
+  std::FILE* stream = fopencookie(this, "w", functions);
+  if (stream) std::setvbuf(stream, nullptr, _IOLBF, BUFSIZ);
+  return stream;
+}
+
+void ScreenEar::take(const char* text, std::size_t size) {
+  if (screen_) {
+    std::fwrite(text, 1, size, screen_);
+    std::fflush(screen_);
+  }
+  for (const char* c = text; c != text + size; ++c) {
+    if (*c != '\n') {
+      if (line_.size() < kLongestLine) line_ += *c;
+      continue;
+    }
+    if (line_.starts_with("ERROR")) last_error_ = line_;
+    line_.clear();
+  }
+}
+
+std::string without_source(const std::string& error) {
+  static const std::regex place(R"( \([^()\s]*:\d+\)\s*$)");
+  return std::regex_replace(error, place, "");
+}
+
+}  // namespace dem

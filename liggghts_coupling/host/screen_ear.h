@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace dem {
+
+/// Stands between LIGGGHTS and its screen: passes on what is written and remembers the last line
+/// that begins with ERROR. An error of one process goes to the screen alone, in no log.
+class ScreenEar {
+ public:
+  /// What LIGGGHTS is to write to. It closes it; this object must live until then.
+  /// @param screen  where it goes on to, not closed; null: nowhere
+  /// @return null where the system has no memory for a stream
+  std::FILE* listen(std::FILE* screen);
+
+  const std::string& last_error() const { return last_error_; }
+
+ private:
+  void take(const char* text, std::size_t size);
+
+  std::FILE* screen_ = nullptr;
+  std::string line_, last_error_;
+};
+
+/// An error line of LIGGGHTS without the place in its source, which ends it: " (pair.cpp:12)".
+std::string without_source(const std::string& error);
+
+}  // namespace dem

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/solver/block_loads.h"
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using namespace lbm;
+
+constexpr double kForce = 1e-6;
+
+/// A fluid that a force drives along x past blocks, until nothing changes any more.
+Fluid steady(const Domain& domain, const char* lattice, const std::vector<CellBox>& blocks,
+             int steps) {
+  KernelChoice choice{"trt", "none", true, "resistance", {.tau = 0.8, .force_x = kForce}};
+  choice.lattice = lattice;
+  Fluid fluid(domain, choice);
+  for (const CellBox& block : blocks) fluid.add_wall(block.from, block.to);
+  fluid.prepare_walls();
+  fluid.advance(steps);
+  return fluid;
+}
+
+struct Box {
+  const char* lattice;
+  Domain domain;
+  CellBox block;
+  int cells;  // of the block
+};
+class EachBox : public testing::TestWithParam<Box> {};
+INSTANTIATE_TEST_SUITE_P(
+    Boxes, EachBox,
+    testing::Values(
+        Box{"D2Q9", {24, 20, Side::Periodic, Side::Periodic}, {{9, 7, 0}, {15, 12, 1}}, 30},
+        Box{"D3Q19",
+            {12, 10, Side::Periodic, Side::Periodic, 10, Side::Periodic},
+            {{4, 3, 3}, {8, 7, 7}},
+            64}),
+    [](const auto& info) { return std::string(info.param.lattice); });
+
+// What drives the fluid outside of the block is all that it passes on: F = G × fluid cells. The
+// tolerance is what is left of the start after the steps; round-off is below it.
+TEST_P(EachBox, TakesWhatDrivesTheFluid) {
+  const Box& box = GetParam();
+  const Domain& d = box.domain;
+  const Fluid fluid = steady(d, box.lattice, {box.block}, 6000);
+  const BodyLoad load = BlockLoads(fluid, {box.block}).loads(fluid)[0];
+  const double drive = kForce * (d.nx * d.ny * d.nz - box.cells);
+  EXPECT_NEAR(load.force.x(), drive, 1e-6 * drive);
+  EXPECT_NEAR(load.force.y(), 0.0, 1e-6 * drive);
+}
+
+// Two blocks that touch are one: forces add, and torques with the arms of their centres.
+TEST(BlockLoads, AddUpWhereBlocksTouch) {
+  const Domain channel{30, 16, Side::Periodic, Side::Wall};
+  const CellBox whole{{10, 3, 0}, {18, 8, 1}}, low{{10, 3, 0}, {18, 5, 1}},
+      high{{10, 5, 0}, {18, 8, 1}};
+  const Fluid fluid = steady(channel, "D2Q9", {whole}, 500);
+  const BodyLoad one = BlockLoads(fluid, {whole}).loads(fluid)[0];
+  const auto two = BlockLoads(fluid, {low, high}).loads(fluid);
+  const auto about = [&](const BodyLoad& load, const CellBox& box) -> Vec3 {
+    return load.torque + (box.centre() - whole.centre()).cross(load.force);
+  };
+  const Vec3 force = two[0].force + two[1].force;
+  const Vec3 torque = about(two[0], low) + about(two[1], high);
+  EXPECT_LT((force - one.force).norm(), 1e-14 * one.force.norm());
+  EXPECT_LT((torque - one.torque).norm(), 1e-13 * one.torque.norm());
+  EXPECT_GT(std::abs(one.torque.z()), 0.1 * one.force.norm());  // the flow is faster above
+  // a cell that two blocks hold is of the first
+  const auto overlapping = BlockLoads(fluid, {whole, low}).loads(fluid);
+  EXPECT_EQ(overlapping[0].force, one.force);
+  EXPECT_EQ(overlapping[1].force, Vec3(0.0, 0.0, 0.0));
+}
+
+}  // namespace

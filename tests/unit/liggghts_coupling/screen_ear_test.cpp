@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "liggghts_coupling/host/screen_ear.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/job.h"
+
+namespace {
+
+TEST(ScreenEar, PassesOnWhatItHearsAndKeepsTheLastError) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.path() + "/screen.txt";
+  std::FILE* screen = std::fopen(path.c_str(), "w");
+  dem::ScreenEar ear;
+  std::FILE* stream = ear.listen(screen);
+  ASSERT_NE(stream, nullptr);
+  const std::string text = "Step Atoms\n  ERROR is no first word here\nERROR: no (pair.cpp:7)\nat";
+  std::fputs(text.c_str(), stream);
+  std::fflush(stream);
+  EXPECT_EQ(ear.last_error(), "ERROR: no (pair.cpp:7)");
+  std::fputs(" the end\nERROR on proc 3: later (../src/a.cpp:12)\n", stream);
+  std::fclose(stream);
+  std::fclose(screen);
+  EXPECT_EQ(ear.last_error(), "ERROR on proc 3: later (../src/a.cpp:12)");
+  EXPECT_EQ(test::read_file(path), text + " the end\nERROR on proc 3: later (../src/a.cpp:12)\n");
+}
+
+TEST(ScreenEar, NeedsNoScreen) {
+  dem::ScreenEar ear;
+  std::FILE* stream = ear.listen(nullptr);
+  std::fputs("ERROR: alone\n", stream);
+  std::fclose(stream);
+  EXPECT_EQ(ear.last_error(), "ERROR: alone");
+}
+
+TEST(ScreenEar, AnErrorIsToldWithoutItsSource) {
+  EXPECT_EQ(dem::without_source("ERROR: Invalid pair style (/build/liggghts-1/src/force.cpp:246)"),
+            "ERROR: Invalid pair style");
+  EXPECT_EQ(dem::without_source("ERROR: fix x (every 3) is odd (../fix_x.cpp:1)"),
+            "ERROR: fix x (every 3) is odd");
+  EXPECT_EQ(dem::without_source("ERROR: types (1 and 2)"), "ERROR: types (1 and 2)");
+}
+
+}  // namespace
