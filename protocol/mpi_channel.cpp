@@ -73,6 +73,7 @@ class MpiChannel final : public Channel {
       return here != 0;
     });
     if (!came) throw Timeout(timeout_text(*this, remote, wait));
+    note_answer();
     return take(status);
   }
 

@@ -111,6 +111,8 @@ def parser():
     p.add_argument("--restart", action="store_const", const="checkpoint", help="go on from the checkpoint in --out")
     p.add_argument("--restart=fault", dest="restart", action="store_const", const="fault",
                    help="go on from the states that both programs kept at a fault")
+    p.add_argument("--accept", action="append", default=[], metavar="KEY",
+                   help="with --restart: a key or table of the scene that may have changed, e.g. fluid.body_force")
     p.add_argument("--out", metavar="DIR", help="a new, an empty or an earlier run's folder; default: "
                    "out/SCENE[-SET][-VARIANT], where an earlier run is renamed to ….1, ….2 and so on")
     p.add_argument("--force", action="store_true", help="replace an earlier run in the output folder")
@@ -137,6 +139,8 @@ def arguments(words):
         fail(f"--threads {args.threads}: a rank takes at most {MOST_THREADS}; take more --fluid-ranks")
     if args.force and args.restart:
         fail("--force replaces an earlier run and --restart goes on from it; give one of them")
+    if args.accept and not args.restart:
+        fail("--accept says what a restart may change; give it with --restart")
     known = options(args.scene)
     args.own = []
     while rest:
@@ -179,6 +183,7 @@ def command(args, out):
     fluid += ["--force"] if args.force else []
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
     fluid += [f"--restart={args.restart}"] if args.restart else []
+    fluid += [word for key in args.accept for word in ("--accept", key)]
     first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
     solid = solid_command(args, bin_dir, out)
     return first + ([":", "-np", str(args.solid_ranks), *solid] if solid else [])

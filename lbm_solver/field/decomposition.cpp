@@ -157,6 +157,21 @@ std::vector<double> Decomposition::collect(const std::vector<double>& local) con
   return all;
 }
 
+std::vector<double> Decomposition::own_part(const std::vector<double>& collected,
+                                            std::size_t length) const {
+  std::vector<double> part(length, 0.0);
+  const std::size_t parts = length ? collected.size() / length : 0;
+  if (parts * length != collected.size())
+    throw std::invalid_argument("sums of ranks are of another size");
+  if (parts == static_cast<std::size_t>(size_)) {
+    std::copy_n(collected.begin() + static_cast<std::ptrdiff_t>(length) * rank_, length,
+                part.begin());
+    return part;
+  }
+  for (std::size_t k = 0; rank_ == 0 && k < collected.size(); ++k) part[k % length] += collected[k];
+  return part;
+}
+
 void Decomposition::broadcast(std::vector<double>& values) const {
   if (alone()) return;
   auto n = static_cast<unsigned long long>(values.size());

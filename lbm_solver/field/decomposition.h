@@ -47,6 +47,9 @@ class Decomposition {
   std::vector<T> scatter(std::vector<T> global, int components) const;
   /// The lists of all ranks in rank order, on rank 0 (elsewhere empty). Collective.
   std::vector<double> collect(const std::vector<double>& local) const;
+  /// This rank's part of what `collect` has brought together, of equal lengths; on another number
+  /// of ranks the first gets the sum of all, and the others zeros.
+  std::vector<double> own_part(const std::vector<double>& collected, std::size_t length) const;
   /// Rank 0's list, on every rank. Collective.
   void broadcast(std::vector<double>& values) const;
 

@@ -84,8 +84,8 @@ class ImplicitMarkers final : public MarkedBodies {
 class SpringMarkers final : public MarkedBodies {
  public:
   using MarkedBodies::MarkedBodies;
-  std::vector<double> memory() const override;
-  void restore(const std::vector<double>& memory) override;
+  Record save() const override;
+  void load(const Record& record) override;
 
  private:
   std::vector<Vec3> changes(const Marked& marked, const std::vector<Vec3>& slip) override;

@@ -51,10 +51,11 @@ struct BondBook {
   long intact = 0;                                         ///< at the last force computation
   EnergyFlow energy;               ///< elastic now, the rest since the beginning [J]
   std::vector<BreakEvent> events;  ///< not yet written
+  long written_until = -1;         ///< step; those up to it are written; -1: nobody says so
   bool list_wanted = false;        ///< the coming force computations list the intact bonds
   std::vector<std::pair<long, long>>
       listed;                      ///< intact at the last force computation, where wanted
-  std::vector<BreakEvent> broken;  ///< all since the beginning of this process
+  std::vector<BreakEvent> broken;  ///< all since the beginning of the run
 };
 
 }  // namespace dem

@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* kColumns = "step,time,id1,id2,mode,force,x,y,z,nx,ny,nz\n";
 
-/// Lines of an earlier run before a step.
+/// Lines of an earlier run up to a step.
 std::string kept_lines(const std::string& path, long before) {
   std::ifstream file(path);
   std::string line, kept;
@@ -71,8 +71,9 @@ void FixBondBreaks::init() {
 }
 
 void FixBondBreaks::open() {
-  const std::string kept =
-      update->ntimestep > 0 ? kept_lines(path_, static_cast<long>(update->ntimestep)) : "";
+  // breaks that were not written yet when the run was stopped, the ledger has
+  const long ledger = BondBook::instance().written_until, now = update->ntimestep;
+  const std::string kept = now > 0 ? kept_lines(path_, ledger >= 0 ? ledger : now) : "";
   // under another name, or a kill at this moment would lose the lines of the run before
   const std::string part = path_ + ".part";
   file_.reset(std::fopen(part.c_str(), "w"));
@@ -104,6 +105,7 @@ void FixBondBreaks::write() {
   MPI_Gatherv(mine.data(), bytes, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE, 0,
               world);
   mine.clear();
+  BondBook::instance().written_until = static_cast<long>(update->ntimestep);
   std::sort(all.begin(), all.end(), [](const BreakEvent& a, const BreakEvent& b) {
     return std::tuple(a.step, a.first, a.second) < std::tuple(b.step, b.first, b.second);
   });

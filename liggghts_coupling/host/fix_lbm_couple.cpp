@@ -11,6 +11,8 @@
 #include <signal_handling.h>
 #include <update.h>
 
+#include <utility>
+
 #include "liggghts_coupling/bond/bond_book.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/solid_hello.h"
@@ -31,6 +33,7 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
         "no fluid program was started beside liggghts; start: mpirun -np 1 lbm scene.toml : -np 1 "
         "liggghts -in FILE");
   nevery = 1;
+  restart_global = 1;
   restart_peratom = 1;
   create_attribute = 1;
   peratom_flag = 1;
@@ -40,6 +43,7 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
   atom->add_callback(0);  // held loads follow their particles …
   atom->add_callback(1);  // … and go into restart files
   for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
+  BondBook::instance().list_wanted = true;  // with the first states, too
   Coupling::instance().session->set_timeout(timeout_);
   if (!record_.empty()) begin_recording();
 }
@@ -113,12 +117,14 @@ void FixLbmCouple::init() {
                        modify->fix[i]->id, style));
     if (holds) held_still_ |= modify->fix[i]->groupbit;
   }
+  if (Coupling::instance().session->fluid().features & protocol::kCheckpoints) note_particles();
 }
 
 void FixLbmCouple::setup(int vflag) {
   if (settling_again_) {
-    write_checkpoint();
-    send_states();
+    const bool write = std::exchange(checkpoint_asked_, false);
+    if (write) write_checkpoint();
+    send_states(write ? protocol::kCheckpoint : protocol::kContinue);
     if (!overlapped_ && !Coupling::instance().over) take_loads(false);
     post_force(vflag);
     return;
@@ -188,7 +194,7 @@ void FixLbmCouple::end_of_step() {
   if (Coupling::instance().over || (update->ntimestep - first_step_) % substeps_ != 0) return;
   ++interval_;
   if (underway_) take_loads(true);  // overlapped: of the interval that ends, for the next one
-  if (checkpoint_asked_) {
+  if (settle_asked_ || checkpoint_asked_) {
     settle_again();
   } else {
     send_states();
@@ -229,12 +235,11 @@ std::optional<protocol::BondReport> FixLbmCouple::bond_report() {
   return report;
 }
 
-void FixLbmCouple::send_states() {
+void FixLbmCouple::send_states(std::uint32_t flags) {
   Coupling& coupling = Coupling::instance();
   gather();
   const double interval = update->dt * substeps_;
-  const std::uint32_t flags =
-      (stop_asked_ ? protocol::kLast : 0U) | (settling_again_ ? protocol::kCheckpoint : 0U);
+  if (stop_asked_) flags |= protocol::kLast;
   coupling.session->send({interval_, static_cast<double>(interval_) * interval, flags}, states_,
                          shapes_, bond_report());
   coupling.over = stop_asked_;
@@ -264,6 +269,7 @@ void FixLbmCouple::take_loads(bool add_change) {
   const auto reply = collect();
   underway_ = false;
   stop_asked_ = reply.flags & protocol::kStop;
+  settle_asked_ = reply.flags & protocol::kSettle;
   checkpoint_asked_ = reply.flags & protocol::kCheckpoint;
   BondBook::instance().list_wanted = reply.flags & protocol::kWantBonds;
   if (!overlapped_) {
