@@ -66,7 +66,7 @@ Record ObstacleLoads::save() const {
     for (const Vec3* v : {&sum.force, &sum.torque}) sums.insert(sums.end(), v->begin(), v->end());
   Record record;
   record.set("steps", std::int64_t{steps_});
-  record.set("force_and_torque_sums", ranks_.collect(sums));
+  record.set("force_and_torque_sums", ranks_.collect_parts(sums));
   return record;
 }
 

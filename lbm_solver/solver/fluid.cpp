@@ -317,7 +317,7 @@ Record Fluid::save_boundary(std::size_t number) const {
     links[static_cast<std::size_t>(lines[k])] = lines[k + 1];
   Record record;
   record.set("links", std::move(links));
-  record.set("mass_in", ranks_->collect({patch.mass_in()}));
+  record.set("mass_in", ranks_->collect_parts({patch.mass_in()}));
   return record;
 }
 

@@ -4,8 +4,10 @@
 /// where rows are whole. Where x is cut, a covered cell shares its SIMD block with other cells,
 /// which a float box sweeps in double precision with it: then to round-off of what is stored.
 #include <gtest/gtest.h>
+
 #include <mpi.h>
 #include <omp.h>
+#include <bit>
 
 #include <random>
 
@@ -187,9 +189,17 @@ TEST(Ranks, SweepTheSameCellsAsOneAlone) {
 
 /// A record as every rank reads it from a file; it is complete on the first one.
 Record everywhere(Record record, const Decomposition& ranks) {
-  for (auto& [name, value] : record.values())
+  for (auto& [name, value] : record.values()) {
     if (auto* list = std::get_if<std::vector<double>>(&value); list && name != "populations")
       ranks.broadcast(*list);
+    if (auto* ids = std::get_if<std::vector<std::int64_t>>(&value)) {
+      std::vector<double> bits;
+      for (const std::int64_t id : *ids) bits.push_back(std::bit_cast<double>(id));
+      ranks.broadcast(bits);
+      ids->clear();
+      for (const double b : bits) ids->push_back(std::bit_cast<std::int64_t>(b));
+    }
+  }
   Record all = record;
   for (const auto& [name, part] : record.parts()) all.set(name, everywhere(part, ranks));
   return all;
