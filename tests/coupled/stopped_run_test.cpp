@@ -166,14 +166,14 @@ TEST_F(StoppedRunTest, RemembersItsBrokenBonds) {
 
 // A signal ends a run at the next interval at which it may be stopped, at most 100 later.
 TEST_F(StoppedRunTest, StoppedByASignalOrKilledAFewTimes) {
-  change("end_time = 0.014", "end_time = 0.024");
+  change("end_time = 0.014", "end_time = 0.0235");
   expect_ok(run("whole"));
   stop_often("parts", 6, 1);
 }
 
 TEST_F(StoppedRunTest, Slow_StoppedTwentyTimesByEach) {
-  change("end_time = 0.014", "end_time = 0.024");
-  change("substeps = 10", "substeps = 30");
+  change("end_time = 0.014", "end_time = 0.0235");
+  change("substeps = 10", "substeps = 100");
   for (const Ranks ranks : {Ranks{1, 1}, Ranks{1, 2}}) {
     for (const char* out : {"whole", "parts"}) fs::remove_all(path(out));
     expect_ok(run("whole", "", ranks));
