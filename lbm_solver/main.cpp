@@ -49,11 +49,17 @@ void define(CLI::App& app, Options& o) {
                "replace an earlier run in --out; else its folder is renamed to OUT.1, OUT.2 …");
   app.add_option("--until", o.run.until, "stop at this time [s]")
       ->check(protocol::finite_number(0.0));
-  app.add_flag("--restart{checkpoint}", o.run.restart,
+  app.add_flag("--restart{checkpoint}", o.run.restart.from,
                "go on from the checkpoint in --out, or, with --restart=fault, from the last states "
                "that both programs kept when a run failed")
       ->check(CLI::IsMember({"checkpoint", "fault"}))
       ->excludes("--force");
+  app.add_option("--accept", o.run.restart.accept,
+                 "with --restart: a key or table of the scene that may have changed since, e.g. "
+                 "fluid.body_force")
+      ->needs("--restart")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--record", o.record, "write the exchange to this trace file");
   app.add_option("--threads", o.threads, "threads (else OMP_NUM_THREADS, else 1)")
       ->check(CLI::Range(1, kMostThreads));
@@ -120,9 +126,9 @@ void set_threads(int threads) {
 std::unique_ptr<OutputFolder> take_folder(const Options& o, const Scene& scene,
                                           const Decomposition& ranks) {
   std::unique_ptr<OutputFolder> folder;
-  const EarlierRun earlier = !o.run.restart.empty() ? EarlierRun::GoOn
-                             : o.force              ? EarlierRun::Replace
-                                                    : EarlierRun::SetAside;
+  const EarlierRun earlier = !o.run.restart.from.empty() ? EarlierRun::GoOn
+                             : o.force                   ? EarlierRun::Replace
+                                                         : EarlierRun::SetAside;
   if (ranks.rank() == 0) folder = std::make_unique<OutputFolder>(o.run.out, scene.title, earlier);
   if (!ranks.alone()) MPI_Barrier(ranks.comm());
   return folder;
@@ -161,7 +167,11 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
                             ? scene.coupling->timeout
                             : protocol::seconds_from_environment("BPLBM_TIMEOUT", kAloneSeconds));
   check_until(scene, o.run);
-  const Plan plan = make_plan(scene, step_to_keep(scene, o.run));
+  int rank = 0;
+  MPI_Comm_rank(world.local, &rank);
+  std::optional<Restart> restart = find_restart(scene, o.run.out, o.run.restart, rank == 0);
+  const Plan plan = make_plan(scene, restart ? std::optional(restart->step) : std::nullopt);
+  if (restart) check_same_scene(*restart, scene, plan, o.run.restart);
   const Decomposition ranks = divide(o, scene, plan, world.local);
   if (scene.coupling && !channel)
     throw InputError(
@@ -186,8 +196,9 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   if (!ranks.alone())
     log.block(fmt::format("ranks        {} × {} × {}\n", ranks.grid()[0], ranks.grid()[1],
                           ranks.grid()[2]));
-  log.block(describe(scene.coupling ? run_coupled(scene, plan, ranks, *channel, o.run, log)
-                                    : run_alone(scene, plan, ranks, o.run, log)));
+  const Restart* from = restart ? &*restart : nullptr;
+  log.block(describe(scene.coupling ? run_coupled(scene, plan, ranks, *channel, o.run, log, from)
+                                    : run_alone(scene, plan, ranks, o.run, log, from)));
 }
 
 }  // namespace

@@ -82,6 +82,9 @@ enum StepFlags : std::uint32_t {
   kStop = 2,        ///< loads only: send one more state, flagged kLast, and leave
   kCheckpoint = 4,  ///< loads: write a checkpoint with the next states; states: it is written
   kWantBonds = 8,   ///< loads only: list the bonds with the next states
+  /// loads only: before the next states set yourself up as a restart from a checkpoint there would,
+  /// whether or not one is written: a run that is stopped there goes on to the bit
+  kSettle = 16,
 };
 
 struct StepHeader {

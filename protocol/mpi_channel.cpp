@@ -85,6 +85,7 @@ class MpiChannel final : public Channel {
       return here != 0;
     });
     if (!came) give_up(remote, wait);
+    note_answer();
     return take(status);
   }
 

@@ -25,21 +25,21 @@ constexpr double kFarewellSeconds = 3.0;
 constexpr double kEndSeconds = 2.0;     // a partner that has ended needs none of them
 constexpr double kDefaultLimit = 60.0;  // of the end, where the program has set none
 volatile std::sig_atomic_t caught = 0, signals = 0;
-std::timespec caught_at{};
+std::timespec lives_at{};  // the partner, for sure: at the signal, or at an answer since
 volatile std::sig_atomic_t code_at_deadline = 0;
 std::string text_at_deadline;
 
 void note_signal(int signal) {
-  if (!caught) clock_gettime(CLOCK_MONOTONIC, &caught_at);
+  if (!caught) clock_gettime(CLOCK_MONOTONIC, &lives_at);
   caught = signal;
   signals = signals + 1;
 }
 
-double seconds_since_signal() {
+double seconds_since_life() {
   std::timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<double>(now.tv_sec - caught_at.tv_sec) +
-         1e-9 * static_cast<double>(now.tv_nsec - caught_at.tv_nsec);
+  return static_cast<double>(now.tv_sec - lives_at.tv_sec) +
+         1e-9 * static_cast<double>(now.tv_nsec - lives_at.tv_nsec);
 }
 
 double grace() {
@@ -56,8 +56,12 @@ bool signalled() {
   return caught != 0;
 }
 
+void note_answer() {
+  if (caught) clock_gettime(CLOCK_MONOTONIC, &lives_at);
+}
+
 void throw_if_signalled() {
-  if (!caught || seconds_since_signal() < grace()) return;
+  if (!caught || seconds_since_life() < grace()) return;
   throw ProtocolError(
       fmt::format("ended by signal {}: the partner or mpirun died, or somebody stopped the job",
                   static_cast<int>(caught)));

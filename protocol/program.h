@@ -44,10 +44,13 @@ std::string last_error_line(const std::vector<std::string>& files);
 /// From now on SIGTERM and SIGINT do not kill at once. mpirun sends SIGTERM to the survivors when a
 /// program of the job dies, and to all when it is told to end.
 void catch_signals();
-/// Whether one has come: the fluid then ends the run at the end of its interval, in good order.
+/// Whether one has come: the fluid then ends the run at the next interval at which it may be
+/// stopped, in good order.
 bool signalled();
-/// @throws ProtocolError  where a signal came longer ago than a grace of 0.6 s (BPLBM_GRACE), in
-/// which a living partner would have answered
+/// The partner has answered: it lives, and the run goes on until that interval.
+void note_answer();
+/// @throws ProtocolError  where a signal and the partner's last answer came longer ago than a grace
+/// of 0.6 s (BPLBM_GRACE), in which a living partner would have answered
 void throw_if_signalled();
 
 /// What a failing program still does has so many seconds; then the process says why it failed and

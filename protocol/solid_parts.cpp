@@ -5,8 +5,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "protocol/errors.h"
+#include "protocol/numbers.h"
 
 namespace protocol {
 
@@ -14,22 +16,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::size_t kEarlier = 2;  // parts that stay beside the last one
+
 std::string plain(const std::string& path) {
   return fs::absolute(path).lexically_normal();
 }
 
 }  // namespace
 
-SolidParts::SolidParts(const std::string& prefix, const std::string& last)
-    : prefix_(plain(prefix)), last_(last.empty() ? last : plain(last)) {}
+SolidParts::SolidParts(const std::string& prefix) : prefix_(plain(prefix)) {}
 
 SolidParts SolidParts::of(const Hello& fluid) {
-  std::string prefix = "checkpoint", last;
-  for (const Variable& v : fluid.variables) {
-    if (v.name == "checkpoint") prefix = v.value;
-    if (v.name == "restart_file" && fluid.first_interval > 0) last = v.value;
-  }
-  return SolidParts(prefix, last);
+  for (const Variable& v : fluid.variables)
+    if (v.name == "checkpoint") return SolidParts(v.value);
+  return SolidParts("checkpoint");
 }
 
 SolidParts SolidParts::beside(const std::string& name) const {
@@ -51,13 +51,23 @@ void SolidParts::keep(std::int64_t interval, std::span<const std::byte> content)
     fs::remove(part, error);
     throw ProtocolError("the checkpoint " + whole + " cannot be written; is the disk full?");
   }
+  remove_others(interval);
+}
+
+void SolidParts::remove_others(std::int64_t interval) const {
+  std::set<std::int64_t> earlier;
+  std::error_code none;
   for (const auto& entry : fs::directory_iterator(fs::path(prefix_).parent_path())) {
     const std::string found = entry.path().string();
-    if (found.starts_with(prefix_ + ".") && found.ends_with(".solid") && found != whole &&
-        found != last_)
-      fs::remove(entry.path(), error);
+    if (!found.starts_with(prefix_ + ".")) continue;
+    const auto number = to_number<std::int64_t>(
+        found.substr(prefix_.size() + 1, found.find('.', prefix_.size() + 1) - prefix_.size() - 1));
+    if (!number || found != name(*number)) continue;
+    if (*number < interval) earlier.insert(*number);
+    if (*number > interval) fs::remove(entry.path(), none);
   }
-  last_ = whole;
+  for (; earlier.size() > kEarlier; earlier.erase(earlier.begin()))
+    fs::remove(name(*earlier.begin()), none);
 }
 
 }  // namespace protocol

@@ -116,6 +116,9 @@ struct OutputScene {
 struct Scene {
   std::string file;  ///< where it was read
   std::string title;
+  /// Every key by its full name, e.g. fluid.density or boundary.1.velocity, with its value, those
+  /// too that defaults have filled in.
+  std::map<std::string, std::string> settings;
   BoxScene box;
   FluidScene fluid;
   NumericsScene numerics;

@@ -90,7 +90,8 @@ std::int64_t Observers::next_look(std::int64_t state) const {
 }
 
 void Observers::at_state(std::int64_t state, Fluid& fluid, const Particles* particles, bool last) {
-  if (last || state == first_) guard(state, fluid, particles);
+  // the run that goes on has looked at its first state, or does so when it is due
+  if (last || (fresh_ && state == first_)) guard(state, fluid, particles);
   // Fields first: where they find the disk full, the loads' sums are still there to be kept.
   if (last ? field_times_.has_value() : draws_at(state))
     write_fields(time_of(state), fluid, particles);
@@ -109,20 +110,24 @@ void Observers::after_interval(std::int64_t state, Fluid& fluid, const Particles
     report_progress(state, particles);
 }
 
-std::vector<double> Observers::state() const {
-  std::vector<double> s{max_speed_, first_mass_excess_, mass_excess_};
-  if (obstacles_) {
-    const std::vector<double> loads = obstacles_->state();
-    s.insert(s.end(), loads.begin(), loads.end());
-  }
-  return s;
+Record Observers::save() const {
+  Record record;
+  record.set("max_speed", max_speed_);
+  record.set("first_mass_excess", first_mass_excess_);
+  record.set("mass_excess", mass_excess_);
+  if (obstacles_) record.set("obstacle_loads", obstacles_->save());
+  if (steady_) record.set("steady", steady_->save(ranks_));
+  return record;
 }
 
-void Observers::restore(const std::vector<double>& s) {
-  max_speed_ = s.at(0);
-  first_mass_excess_ = s.at(1);
-  mass_excess_ = s.at(2);
-  if (obstacles_) obstacles_->restore(std::span(s).subspan(3));
+void Observers::load(const Record& record) {
+  fresh_ = false;
+  max_speed_ = record.real("max_speed");
+  first_mass_excess_ = record.real("first_mass_excess");
+  mass_excess_ = record.real("mass_excess");
+  if (obstacles_) obstacles_->load(record.part("obstacle_loads"));
+  // steady_below may be another one now, or new
+  if (steady_ && record.parts().contains("steady")) steady_->load(record.part("steady"), ranks_);
 }
 
 void Observers::write_particles(double time, const Particles& particles) {

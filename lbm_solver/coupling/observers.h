@@ -44,10 +44,10 @@ class Observers {
   Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
             const std::string& folder, Log& log, std::int64_t first = 0);
 
-  /// What a checkpoint must keep of the observers; the same on every rank. To be asked for before
-  /// `at_state`, which the run that goes on calls again.
-  std::vector<double> state() const;
-  void restore(const std::vector<double>& state);
+  /// What a checkpoint must keep of the observers, complete on rank 0; `load` wants it on every
+  /// rank. To be asked for before `at_state`, which the run that goes on calls again. Collective.
+  Record save() const;
+  void load(const Record& record);
 
   /// A picture of the fields is due at this state.
   bool draws_at(std::int64_t state) const { return field_times_ && field_times_->due(state); }
@@ -96,6 +96,7 @@ class Observers {
   std::optional<ObstacleLoads> obstacles_;
   std::optional<SteadyWatch> steady_;
   std::optional<FieldWriter> fields_;  // of rank 0, like the tables
+  bool fresh_ = true;                  // it does not go on from a checkpoint
   std::int64_t first_, guard_every_, intervals_done_ = 0;
   double max_speed_ = 0.0, last_speed_ = 0.0;  // of the fluid, lattice units
   SpeedRecord speeds_;

@@ -66,18 +66,22 @@ void ObstacleLoads::write(double time) {
   steps_ = 0;
 }
 
-std::vector<double> ObstacleLoads::state() const {
-  std::vector<double> s{static_cast<double>(steps_)};
-  for (const BodyLoad& sum : whole())
-    for (const Vec3* v : {&sum.force, &sum.torque}) s.insert(s.end(), v->begin(), v->end());
-  return s;
+Record ObstacleLoads::save() const {
+  std::vector<double> sums;
+  for (const BodyLoad& sum : sums_)
+    for (const Vec3* v : {&sum.force, &sum.torque}) sums.insert(sums.end(), v->begin(), v->end());
+  Record record;
+  record.set("steps", std::int64_t{steps_});
+  record.set("force_and_torque_sums", ranks_.collect_parts(sums));
+  return record;
 }
 
-void ObstacleLoads::restore(std::span<const double> s) {
-  steps_ = static_cast<int>(s[0]);
-  if (ranks_.rank() != 0) return;  // the first keeps what all had
+void ObstacleLoads::load(const Record& record) {
+  const std::vector<double> sums =
+      ranks_.own_part(record.get<std::vector<double>>("force_and_torque_sums"), 6 * sums_.size());
+  steps_ = static_cast<int>(record.integer("steps"));
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    const double* v = &s[1 + 6 * i];
+    const double* v = &sums[6 * i];
     sums_[i] = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
   }
 }

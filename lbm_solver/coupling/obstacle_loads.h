@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lbm_solver/base/record.h"
 #include "lbm_solver/immersed/body.h"
 #include "lbm_solver/io/probe_writer.h"
 #include "lbm_solver/solver/plan.h"
@@ -26,9 +27,10 @@ class ObstacleLoads {
   /// Collective.
   void write(double time);
 
-  /// Collective; the same on every rank, and what `restore` wants on every rank.
-  std::vector<double> state() const;
-  void restore(std::span<const double> state);
+  /// Collective; the same on every rank, and what `load` wants on every rank.
+  Record save() const;
+  /// @throws std::invalid_argument where it is of other obstacles
+  void load(const Record& record);
 
  private:
   std::vector<BodyLoad> whole() const;

@@ -2,10 +2,11 @@
 #include "lbm_solver/coupling/particles.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <stdexcept>
 #include <unordered_map>
 
 #include "lbm_solver/immersed/solid_term.h"
@@ -226,8 +227,6 @@ std::span<const protocol::Load> Particles::mean_loads(int steps) {
 
 namespace {
 
-constexpr std::size_t kKept = 20;  // id, epoch and six vectors
-
 void keep(std::vector<double>& memory, std::initializer_list<protocol::Vec3> vectors) {
   for (const protocol::Vec3& v : vectors) memory.insert(memory.end(), v.begin(), v.end());
 }
@@ -331,36 +330,66 @@ Particles::Everything Particles::gather() const {
   return all;
 }
 
-std::vector<double> Particles::memory() const {
-  std::vector<double> memory;
-  const std::vector<Past> all = present();
+constexpr std::array<Particles::Kept, 6> Particles::kKept{
+    {{"velocities", [](Past& p) -> protocol::Vec3& { return p.motion.v; }},
+     {"angular_velocities", [](Past& p) -> protocol::Vec3& { return p.motion.omega; }},
+     {"forces", [](Past& p) -> protocol::Vec3& { return p.force; }},
+     {"torques", [](Past& p) -> protocol::Vec3& { return p.torque; }},
+     {"mean_velocity_changes", [](Past& p) -> protocol::Vec3& { return p.mean_change.v; }},
+     {"mean_angular_velocity_changes",
+      [](Past& p) -> protocol::Vec3& { return p.mean_change.omega; }}}};
+
+Record Particles::save() const {
+  std::vector<double> lines;
+  std::vector<Past> all = present();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!at_home(i)) continue;
-    const Past& p = all[i];
-    memory.insert(memory.end(), {static_cast<double>(p.id), static_cast<double>(p.epoch)});
-    keep(memory,
-         {p.motion.v, p.motion.omega, p.force, p.torque, p.mean_change.v, p.mean_change.omega});
+    lines.insert(lines.end(),
+                 {std::bit_cast<double>(all[i].id), std::bit_cast<double>(all[i].epoch)});
+    for (const Kept& kept : kKept) keep(lines, {kept.of(all[i])});
   }
-  return ranks_.collect(memory);
+  lines = ranks_.collect(lines);
+  constexpr std::size_t integers = 2;
+  const std::size_t line = integers + 3 * kKept.size(), n = lines.size() / line;
+  std::vector<std::int64_t> ids(n), epochs(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    ids[i] = std::bit_cast<std::int64_t>(lines[i * line]);
+    epochs[i] = std::bit_cast<std::int64_t>(lines[i * line + 1]);
+  }
+  Record record;
+  for (std::size_t k = 0; k < kKept.size(); ++k) {
+    std::vector<double> vectors;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double* from = &lines[i * line + integers + 3 * k];
+      vectors.insert(vectors.end(), from, from + 3);
+    }
+    record.set(kKept[k].name, std::move(vectors));
+  }
+  record.set("ids", std::move(ids));
+  record.set("epochs", std::move(epochs));
+  return record;
 }
 
-void Particles::restore(std::span<const double> memory) {
-  if (memory.size() % kKept != 0)
-    throw std::invalid_argument("'particles' of a checkpoint has another size");
-  const std::size_t n = memory.size() / kKept;
-  particles_.assign(n, {});
-  loads_.assign(n, {});
-  mean_change_.assign(n, {});
-  for (std::size_t i = 0; i < n; ++i) {
-    const double* from = &memory[kKept * i];
+void Particles::load(const Record& record) {
+  const auto& ids = record.get<std::vector<std::int64_t>>("ids");
+  const auto& epochs = record.list<std::int64_t>("epochs", ids.size());
+  std::vector<Past> all(ids.size());
+  for (const Kept& kept : kKept) {
+    const auto& vectors = record.list<double>(kept.name, 3 * ids.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      std::copy_n(&vectors[3 * i], 3, kept.of(all[i]).begin());
+  }
+  particles_.assign(all.size(), {});
+  loads_.clear();
+  mean_change_.clear();
+  for (std::size_t i = 0; i < all.size(); ++i) {
     protocol::State& s = particles_[i].state;
-    s.id = loads_[i].id = static_cast<std::int64_t>(*from++);
-    particles_[i].shape.epoch = static_cast<std::int64_t>(*from++);
-    for (protocol::Vec3* v : {&s.v, &s.omega, &loads_[i].force, &loads_[i].torque,
-                              &mean_change_[i].v, &mean_change_[i].omega}) {
-      std::copy_n(from, 3, v->begin());
-      from += 3;
-    }
+    s.id = ids[i];
+    particles_[i].shape.epoch = epochs[i];
+    s.v = all[i].motion.v;
+    s.omega = all[i].motion.omega;
+    loads_.push_back({ids[i], all[i].force, all[i].torque});
+    mean_change_.push_back(all[i].mean_change);
   }
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "lbm_solver/base/record.h"
 #include "lbm_solver/base/scene.h"
 #include "lbm_solver/field/decomposition.h"
 #include "lbm_solver/immersed/body.h"
@@ -114,11 +116,10 @@ class Particles {
   Everything gather() const;
 
   /// What the next interval needs of the last one, for a checkpoint; before `arrive`. Complete on
-  /// rank 0. Collective.
-  std::vector<double> memory() const;
-  /// @param memory  the same on every rank
-  /// @throws std::invalid_argument where it is no memory of particles
-  void restore(std::span<const double> memory);
+  /// rank 0; `load` wants it on every rank. Collective.
+  Record save() const;
+  /// @throws std::invalid_argument where it is no record of particles
+  void load(const Record& record);
 
   double max_speed() const;  ///< [m/s], of centre and rim, of this rank's
 
@@ -133,6 +134,12 @@ class Particles {
     protocol::Vec3 force{}, torque{};  ///< as sent, whole where virtual masses are about
     Motion mean_change;                ///< of the last intervals (LightRule)
   };
+  /// A vector of a particle that a checkpoint keeps, under a name.
+  struct Kept {
+    const char* name;
+    protocol::Vec3& (*of)(Past&);
+  };
+  static const std::array<Kept, 6> kKept;
   double covered_radius(std::size_t i) const;    // that the lattice sees, R_c [m]
   double fluid_mass(double radius) const;        // in a disc or sphere of that radius [kg]
   double covered_mass(std::size_t i) const;      // m_c: fluid in covered cells [kg]

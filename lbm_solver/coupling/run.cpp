@@ -39,84 +39,75 @@ Summary summarise(const Scene& scene, const RunOptions& options, const Fluid& fl
   return summary;
 }
 
-/// Grid and steps that a checkpoint belongs to. Of the step, what it was before it was fitted to an
-/// end time, which may be another one when the run goes on.
-std::vector<double> identity(const Plan& plan) {
-  const auto& p = plan.kernel.parameters;
-  return {static_cast<double>(plan.domain.nx),
-          static_cast<double>(plan.domain.ny),
-          static_cast<double>(plan.domain.nz),
-          plan.kernel.precision == Precision::Single ? 1.0 : 0.0,
-          plan.wished_step,
-          p.tau,
-          static_cast<double>(plan.fluid_steps),
-          static_cast<double>(plan.substeps)};
-}
+/// The times at which a run may be stopped: it goes on from there to the bit, since the solid is
+/// set up anew at each of them, as a restart does, whether or not a checkpoint is written.
+class StopTimes {
+ public:
+  StopTimes(const Scene& scene, const Plan& plan) {
+    if (scene.checkpoint_every <= 0.0) return;
+    const double intervals = std::min(scene.checkpoint_every / plan.interval(), 1e15);
+    every_ = std::max<std::int64_t>(1, std::llround(intervals));
+  }
+  bool any() const { return every_ > 0; }
+  /// A checkpoint is written at this state, whatever happens.
+  bool checkpoint(std::int64_t state) const { return any() && state % every_ == 0; }
+  /// At this state the run may be stopped.
+  bool stop(std::int64_t state) const {
+    return !any() || state % kMostIntervals == 0 || checkpoint(state);
+  }
+  /// First state after this one at which a checkpoint is written.
+  std::int64_t next_checkpoint(std::int64_t state) const { return (state / every_ + 1) * every_; }
 
-/// Collective; rank 0 writes.
-void save(const std::string& path, const Plan& plan, const Decomposition& ranks, State state,
-          const Observers& observers, std::int64_t interval) {
-  state["observers"] = observers.state();
-  if (ranks.rank() != 0) return;
-  state["identity"] = identity(plan);
-  state["interval"] = {static_cast<double>(interval)};
-  state["step"] = {plan.units.dt};
-  write_checkpoint(path, state);
-}
+ private:
+  static constexpr std::int64_t kMostIntervals = 100;  // that a signal may have to wait
+  std::int64_t every_ = 0;                             // intervals between checkpoints; 0: none
+};
 
-/// Every rank reads; the populations are for rank 0, which hands them out.
-State load(const std::string& path, const Plan& plan, const Decomposition& ranks) {
-  State state = read_checkpoint(path);
-  if (ranks.rank() != 0) state["populations"].clear();
-  if (state["identity"] != identity(plan) || state["interval"].size() != 1)
-    throw InputError(path, "was written by a run with another grid or step",
-                     "restart with the same scene and overlays");
-  return state;
-}
-
-std::int64_t checkpoint_intervals(const Scene& scene, const Plan& plan) {
-  if (scene.checkpoint_every <= 0.0) return 0;
-  const double intervals = std::min(scene.checkpoint_every / plan.interval(), 1e15);
-  return std::max<std::int64_t>(1, std::llround(intervals));
-}
-
-/// Where a coupled run begins; checks that the solid has its part of the checkpoint.
-RunStart start_of(const RunOptions& options, const Plan& plan, const State& state) {
-  RunStart start;
-  const auto path = [&](const std::string& name) {
-    return std::filesystem::absolute(options.out + "/" + name).lexically_normal().string();
+/// Where a coupled run begins, and where its checkpoints lie.
+RunStart start_of(const RunOptions& options, const Plan& plan, const Restart* restart) {
+  const auto absolute = [](const std::string& path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
   };
+  RunStart start;
   start.out = options.out;
-  start.checkpoint = path("checkpoint");
-  if (options.restart.empty()) return start;
-  start.interval = static_cast<std::int64_t>(state.at("interval")[0]);
+  start.checkpoint = absolute(options.out + "/checkpoint");
+  if (!restart) return start;
+  start.interval = restart->interval;
   if (start.interval >= last_interval(plan, options))
-    throw InputError(path(options.restart) + ".h5",
-                     "lies at the end of the run: nothing is left to do",
+    throw InputError(absolute(restart->path), "lies at the end of the run: nothing is left to do",
                      "raise --until, or start again without --restart");
-  start.solid_part = protocol::SolidParts(path(options.restart)).name(start.interval);
-  if (!std::filesystem::is_regular_file(start.solid_part))
-    throw InputError(start.solid_part, "is missing: the solid's part of the checkpoint",
-                     options.restart == "fault"
-                         ? "use --restart alone for the last whole checkpoint"
-                         : "start again without --restart");
+  start.solid_part = absolute(restart->solid_part);
   return start;
+}
+
+/// What is said of the checkpoint that a run goes on from.
+void say_restart(const Restart& restart, Log& log) {
+  if (restart.earlier)
+    log.say(restart.interval, "warning", "the last checkpoint is not used: {}", restart.remark);
+  log.say(restart.interval, "restart", "goes on from {}", restart.path);
+}
+
+/// Takes over a record. @throws InputError  it is of another scene or version
+template <class Load>
+void load_from(const Restart& restart, Load&& load) try {
+  load();
+} catch (const std::invalid_argument& error) {
+  throw InputError(restart.path, fmt::format("does not fit this scene: {}", error.what()),
+                   "start again without --restart");
 }
 
 /// The coupled time loop. An interval reads: states arrive, the fluid makes its steps, loads leave.
 class CoupledRun {
  public:
   CoupledRun(const Scene& scene, const Plan& plan, const Decomposition& ranks,
-             protocol::Channel& channel, const RunOptions& options, Log& log)
+             protocol::Channel& channel, const RunOptions& options, Log& log,
+             const Restart* restart)
       : scene_(scene),
         plan_(plan),
         ranks_(ranks),
         options_(options),
         log_(log),
-        state_(options.restart.empty()
-                   ? State{}
-                   : load(options.out + "/" + options.restart + ".h5", plan, ranks)),
-        start_(start_of(options, plan, state_)),
+        start_(start_of(options, plan, restart)),
         solid_(channel, make_hello(scene, plan, start_, ranks.cells()), scene.coupling->timeout),
         fluid_(make_fluid(scene, plan, ranks)),
         bodies_(obstacle_bodies(scene, plan)),
@@ -127,18 +118,21 @@ class CoupledRun {
         partner_(solid_.agree()),
         observers_(scene, plan, ranks, options.out, log, start_.interval),
         end_(last_interval(plan, options)),
-        every_(checkpoint_intervals(scene, plan)) {
+        times_(scene, plan),
+        keep_last_(!restart || !restart->earlier) {
     log.say(start_.interval, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s{}",
             partner_.program, partner_.program_version, plan.substeps, plan.interval(),
             scene.coupling->overlapped ? ", overlapped" : "");
     for (const std::string& wall :
          protocol::one_sided_walls(make_hello(scene, plan, start_, ranks.cells()), partner_))
       log.say(start_.interval, "warning", "{}", wall);
-    if (options.restart.empty()) return;
-    fluid_.restore(state_);
-    particles_.restore(state_.at("particles"));
-    observers_.restore(state_.at("observers"));
-    log.say(start_.interval, "restart", "goes on from {}/{}.h5", options.out, options.restart);
+    if (!restart) return;
+    load_from(*restart, [&] {
+      fluid_.load(restart->record.part("fluid"));
+      particles_.load(restart->record.part("particles"));
+      observers_.load(restart->record.part("observers"));
+    });
+    say_restart(*restart, log);
   }
 
   Summary run() {
@@ -170,8 +164,8 @@ class CoupledRun {
       if (arrival.head.flags & protocol::kCheckpoint) write_checkpoint(interval);
       const bool last = arrival.head.flags & protocol::kLast;
       // a frame may find the disk full: until it is written both still stand at this interval
-      if (every_ > 0 && observers_.draws_at(interval))
-        memory_ = particles_.memory();
+      if (times_.any() && observers_.draws_at(interval))
+        memory_ = particles_.save();
       else
         stands_at_.reset();
       particles_.arrive(arrival.particles, plan_.interval());
@@ -219,24 +213,38 @@ class CoupledRun {
 
   /// What the solid is told with the loads of an interval.
   std::uint32_t flags_after(std::int64_t interval) {
-    const bool stop = interval + 1 >= end_ || protocol::signalled();
+    const std::int64_t next = interval + 1;
+    const bool signalled = protocol::signalled() && times_.stop(next);
+    const bool stop = next >= end_ || signalled;
     std::uint32_t flags = stop ? protocol::kStop : protocol::kContinue;
-    if (stop || observers_.draws_at(interval + 1)) flags |= protocol::kWantBonds;
-    if (every_ > 0 && (protocol::signalled() || (interval + 1) % every_ == 0))
-      flags |= protocol::kCheckpoint;
-    if (protocol::signalled())
+    if (stop || observers_.draws_at(next)) flags |= protocol::kWantBonds;
+    if (times_.any() && times_.stop(next)) flags |= protocol::kSettle;
+    if (times_.any() && (signalled || times_.checkpoint(next))) flags |= protocol::kCheckpoint;
+    if (signalled)
       ending_ = fmt::format("stopped by a signal{}",
-                            every_ > 0 ? "; --restart goes on from its checkpoint" : "");
+                            times_.any() ? "; --restart goes on from its checkpoint" : "");
     return flags;
   }
 
   /// The solid's part lies on disk; with the fluid's both are complete.
-  void write_checkpoint(std::int64_t interval) { write_state("checkpoint", interval); }
+  void write_checkpoint(std::int64_t interval) {
+    const std::string before = fluid_part_before(options_.out, "checkpoint");
+    // what was found damaged at the start does not take the place of the good one before it
+    write_state("checkpoint", interval, keep_last_ ? before : "");
+    keep_last_ = true;
+  }
 
-  void write_state(const std::string& name, std::int64_t interval) {
-    State state = fluid_.state();
-    state["particles"] = memory_ ? *memory_ : particles_.memory();
-    save(options_.out + "/" + name + ".h5", plan_, ranks_, std::move(state), observers_, interval);
+  void write_state(const std::string& name, std::int64_t interval, const std::string& before) {
+    const bool coupled = name == "checkpoint";  // at a fault, the other may not have its part yet
+    Record fluid = fluid_.save(), observers = observers_.save();
+    Record particles = memory_ ? *memory_ : particles_.save();
+    if (ranks_.rank() != 0) return;
+    const protocol::SolidParts parts(options_.out + "/" + name);
+    Record record = checkpoint_record(scene_, plan_, interval, coupled ? parts.name(interval) : "");
+    record.set("fluid", std::move(fluid));
+    record.set("particles", std::move(particles));
+    record.set("observers", std::move(observers));
+    lbm::write_checkpoint(fluid_part(options_.out, name), record, interval, before);
     clock_.charge("checkpoint");
   }
 
@@ -246,11 +254,11 @@ class CoupledRun {
   void keep_last_state(const std::exception& error) {
     const bool everywhere = ranks_.alone() || dynamic_cast<const NumericsError*>(&error) ||
                             dynamic_cast<const protocol::PeerFault*>(&error);
-    if (every_ == 0 || !stands_at_ || !everywhere) return;
+    if (!times_.any() || !stands_at_ || !everywhere) return;
     const protocol::Deadline deadline(error, "lbm");
     try {
       if (!fluid_.extremes().finite) return;
-      write_state("fault", *stands_at_);
+      write_state("fault", *stands_at_, "");
       log_.say(*stands_at_, "fault", "the fluid's last state is kept in {}/fault.h5", options_.out);
     } catch (const std::exception& second) {
       log_.say(*stands_at_, "fault", "the fluid's last state is not kept: {}", second.what());
@@ -262,7 +270,6 @@ class CoupledRun {
   const Decomposition& ranks_;
   const RunOptions& options_;
   Log& log_;
-  const State state_;  // of the checkpoint that it goes on from
   const RunStart start_;
   protocol::FluidSession solid_;
   Fluid fluid_;
@@ -273,26 +280,16 @@ class CoupledRun {
   std::vector<double> masses_;
   const protocol::Hello& partner_;
   Observers observers_;
-  const std::int64_t end_, every_;
+  const std::int64_t end_;
+  const StopTimes times_;
+  bool keep_last_;  // the fluid's part that lies there is good
   std::optional<std::int64_t> stands_at_ = start_.interval;  // no part of an interval is done
-  std::optional<std::vector<double>> memory_;  // of particles_ before those of stands_at_ arrived
+  std::optional<Record> memory_;  // of particles_ before those of stands_at_ arrived
   std::string ending_ = "complete";
   PartClock clock_;
 };
 
 }  // namespace
-
-std::optional<double> step_to_keep(const Scene& scene, const RunOptions& options) {
-  if (options.restart.empty()) return std::nullopt;
-  if (options.restart == "fault" && !scene.coupling)
-    throw InputError(options.out + "/fault.h5", "is kept by coupled runs only",
-                     "use --restart for the last checkpoint");
-  const std::string path = options.out + "/" + options.restart + ".h5";
-  const std::vector<double> step = read_checkpoint_array(path, "step");
-  if (step.size() == 1 && std::isfinite(step[0]) && step[0] > 0.0) return step[0];
-  throw InputError(path, "holds no time step: it is damaged, or of an earlier version",
-                   "start again without --restart");
-}
 
 void check_until(const Scene& scene, const RunOptions& options) {
   if (!options.until) return;
@@ -304,29 +301,36 @@ void check_until(const Scene& scene, const RunOptions& options) {
 }
 
 Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& ranks,
-                    protocol::Channel& channel, const RunOptions& options, Log& log) {
-  return CoupledRun(scene, plan, ranks, channel, options, log).run();
+                    protocol::Channel& channel, const RunOptions& options, Log& log,
+                    const Restart* restart) {
+  return CoupledRun(scene, plan, ranks, channel, options, log, restart).run();
 }
 
 Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
-                  const RunOptions& options, Log& log) {
-  const std::string checkpoint = options.out + "/checkpoint.h5";
+                  const RunOptions& options, Log& log, const Restart* restart) {
   Fluid fluid = make_fluid(scene, plan, ranks);
-  State state;
-  if (!options.restart.empty()) {
-    state = load(checkpoint, plan, ranks);
-    fluid.restore(state);
-  }
+  if (restart) load_from(*restart, [&] { fluid.load(restart->record.part("fluid")); });
   Observers observers(scene, plan, ranks, options.out, log, fluid.steps());
-  if (!options.restart.empty()) {
-    observers.restore(state["observers"]);
-    log.say(fluid.steps(), "restart", "goes on from {}", checkpoint);
+  if (restart) {
+    load_from(*restart, [&] { observers.load(restart->record.part("observers")); });
+    say_restart(*restart, log);
   }
   const std::int64_t end = last_interval(plan, options);
-  const std::int64_t every = checkpoint_intervals(scene, plan);
+  const StopTimes times(scene, plan);
   std::string ending = "complete";
   PartClock clock;
   const std::int64_t first = fluid.steps();
+  bool keep_last = !restart || !restart->earlier;
+  const auto write_state = [&](std::int64_t step) {
+    Record of_fluid = fluid.save(), of_observers = observers.save();
+    if (ranks.rank() != 0) return;
+    Record record = checkpoint_record(scene, plan, step, "");
+    record.set("fluid", std::move(of_fluid));
+    record.set("observers", std::move(of_observers));
+    write_checkpoint(fluid_part(options.out, "checkpoint"), record, step,
+                     keep_last ? fluid_part_before(options.out, "checkpoint") : "");
+    keep_last = true;
+  };
   for (std::int64_t step = first;; step = fluid.steps()) {
     const bool signalled = ranks.max(protocol::signalled() ? 1.0 : 0.0) > 0.0;
     if (signalled)
@@ -335,13 +339,12 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
       ending = fmt::format("steady: the velocity changes by less than {} a turnover",
                            scene.steady_below);
     const bool last = step >= end || signalled || observers.steady();
-    if (every > 0 && step > first && (step % every == 0 || signalled))
-      save(checkpoint, plan, ranks, fluid.state(), observers, step);
+    if (times.any() && step > first && (times.checkpoint(step) || signalled)) write_state(step);
     observers.at_state(step, fluid, nullptr, last);
     clock.charge("output");
     if (last) break;
     std::int64_t next = std::min(observers.next_look(step), end);
-    if (every > 0) next = std::min(next, (step / every + 1) * every);
+    if (times.any()) next = std::min(next, times.next_checkpoint(step));
     fluid.advance(next - step);
     clock.charge("sweep");
     if (!scene.obstacles.empty()) observers.add_loads(fluid, fluid.loads());

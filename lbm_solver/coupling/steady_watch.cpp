@@ -17,11 +17,12 @@ SteadyWatch::SteadyWatch(const Scene& scene, const Plan& plan, std::int64_t step
 void SteadyWatch::look(Fluid& fluid) {
   const Cell3& n = fluid.cells().size;
   const auto nx = static_cast<std::size_t>(n[0]), rows = static_cast<std::size_t>(n[1]) * n[2];
-  std::vector<double> rho(nx), now(3 * nx * rows);
+  std::vector<double> rho(nx), now(3 * nx * rows), u[3];
+  for (auto& component : u) component.resize(nx);
   for (std::size_t r = 0; r < rows; ++r) {
-    const std::span row(now.data() + 3 * nx * r, 3 * nx);
-    fluid.row(static_cast<int>(r) % n[1], static_cast<int>(r) / n[1], rho,
-              {row.first(nx), row.subspan(nx, nx), row.last(nx)});
+    fluid.row(static_cast<int>(r) % n[1], static_cast<int>(r) / n[1], rho, {u[0], u[1], u[2]});
+    for (std::size_t x = 0; x < nx; ++x)
+      for (std::size_t k = 0; k < 3; ++k) now[3 * (nx * r + x) + k] = u[k][x];
   }
   double largest = 0.0, change = 0.0;
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -32,6 +33,26 @@ void SteadyWatch::look(Fluid& fluid) {
   change = fluid.ranks().max(change);
   steady_ = !before_.empty() && largest > 0.0 && change / largest * looks_a_turnover_ < limit_;
   before_ = std::move(now);
+}
+
+Record SteadyWatch::save(const Decomposition& ranks) const {
+  Record record;
+  record.set("steady", std::int64_t{steady_});
+  record.set("looked", std::int64_t{!before_.empty()});
+  record.set("velocities",
+             before_.empty() ? std::vector<double>() : ranks.gather(std::vector(before_), 3));
+  return record;
+}
+
+void SteadyWatch::load(const Record& record, const Decomposition& ranks) {
+  steady_ = record.integer("steady") != 0;
+  before_.clear();
+  if (record.integer("looked") == 0) return;
+  std::vector<double> velocities;
+  const Cell3 all = ranks.domain().cells();
+  if (ranks.rank() == 0)
+    velocities = record.list<double>("velocities", std::size_t{3} * all[0] * all[1] * all[2]);
+  before_ = ranks.scatter(std::move(velocities), 3);
 }
 
 }  // namespace lbm

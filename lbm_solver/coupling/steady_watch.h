@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "lbm_solver/base/record.h"
 #include "lbm_solver/solver/plan.h"
 
 namespace lbm {
@@ -17,9 +18,13 @@ class SteadyWatch {
   void look(Fluid& fluid);
   bool steady() const { return steady_; }
 
+  /// Complete on rank 0, which alone needs it in `load`. Collective.
+  Record save(const Decomposition& ranks) const;
+  void load(const Record& record, const Decomposition& ranks);
+
  private:
   double looks_a_turnover_, limit_;
-  std::vector<double> before_;  // velocity components of a row, row by row
+  std::vector<double> before_;  // velocity, three components a cell; empty before the first look
   bool steady_ = false;
 };
 

@@ -157,6 +157,29 @@ std::vector<double> Decomposition::collect(const std::vector<double>& local) con
   return all;
 }
 
+std::vector<double> Decomposition::collect_parts(const std::vector<double>& part) const {
+  std::vector<double> all(grid_.begin(), grid_.end());
+  const std::vector<double> parts = collect(part);
+  if (rank_ != 0) return {};
+  all.insert(all.end(), parts.begin(), parts.end());
+  return all;
+}
+
+std::vector<double> Decomposition::own_part(std::span<const double> collected,
+                                            std::size_t length) const {
+  std::vector<double> part(length, 0.0);
+  if (collected.size() < 3 || length == 0 || (collected.size() - 3) % length != 0)
+    throw std::invalid_argument("sums of ranks are of another size");
+  const bool same_grid = std::equal(grid_.begin(), grid_.end(), collected.begin());
+  const std::span<const double> parts = collected.subspan(3);
+  if (same_grid && parts.size() == length * static_cast<std::size_t>(size_)) {
+    std::copy_n(parts.begin() + static_cast<std::ptrdiff_t>(length) * rank_, length, part.begin());
+    return part;
+  }
+  for (std::size_t k = 0; rank_ == 0 && k < parts.size(); ++k) part[k % length] += parts[k];
+  return part;
+}
+
 void Decomposition::broadcast(std::vector<double>& values) const {
   if (alone()) return;
   auto n = static_cast<unsigned long long>(values.size());

@@ -47,6 +47,12 @@ class Decomposition {
   std::vector<T> scatter(std::vector<T> global, int components) const;
   /// The lists of all ranks in rank order, on rank 0 (elsewhere empty). Collective.
   std::vector<double> collect(const std::vector<double>& local) const;
+  /// Lists of equal lengths, one of each rank, of which the sum over the ranks counts: on rank 0
+  /// the grid of ranks and all lists. Collective.
+  std::vector<double> collect_parts(const std::vector<double>& part) const;
+  /// This rank's list again; on another grid the first rank gets the sum of all, the others zeros.
+  /// @throws std::invalid_argument  they are of another length
+  std::vector<double> own_part(std::span<const double> collected, std::size_t length) const;
   /// Rank 0's list, on every rank. Collective.
   void broadcast(std::vector<double>& values) const;
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lbm_solver/base/record.h"
 #include "lbm_solver/field/esoteric_pull.h"
 #include "lbm_solver/immersed/body.h"
 #include "lbm_solver/immersed/footprint.h"
@@ -29,9 +30,9 @@ class BodyScheme {
   /// Load of each body over the last step, in the order of before_sweep.
   virtual std::vector<BodyLoad> loads() const = 0;
 
-  /// State that a checkpoint must keep.
-  virtual std::vector<double> memory() const { return {}; }
-  virtual void restore(const std::vector<double>&) {}
+  /// What a checkpoint must keep.
+  virtual Record save() const { return {}; }
+  virtual void load(const Record&) {}
 
   /// The body force on a cell in the coming step, lattice units; the fluid tells it.
   void set_body_force(const Vec3& force) { body_force_ = force; }

@@ -140,24 +140,30 @@ std::vector<Vec3> SpringMarkers::changes(const Marked& marked, const std::vector
   return change;
 }
 
-std::vector<double> SpringMarkers::memory() const {
-  std::vector<double> memory;
+Record SpringMarkers::save() const {
+  std::vector<std::int64_t> ids, counts;
+  std::vector<double> stretches;
   for (const auto& [id, stretch] : stretch_) {
-    memory.insert(memory.end(), {static_cast<double>(id), static_cast<double>(stretch.size())});
-    for (const Vec3& s : stretch) memory.insert(memory.end(), {s.x(), s.y()});
+    ids.push_back(id);
+    counts.push_back(static_cast<std::int64_t>(stretch.size()));
+    for (const Vec3& s : stretch) stretches.insert(stretches.end(), {s.x(), s.y()});
   }
-  return memory;
+  Record record;
+  record.set("ids", std::move(ids));
+  record.set("markers", std::move(counts));
+  record.set("stretches", std::move(stretches));
+  return record;
 }
 
-void SpringMarkers::restore(const std::vector<double>& memory) {
+void SpringMarkers::load(const Record& record) {
+  const auto& ids = record.get<std::vector<std::int64_t>>("ids");
+  const auto& counts = record.list<std::int64_t>("markers", ids.size());
+  const auto& stretches = record.get<std::vector<double>>("stretches");
   stretch_.clear();
-  for (std::size_t i = 0; i + 1 < memory.size();) {
-    std::vector<Vec3>& stretch = stretch_[static_cast<std::int64_t>(memory[i])];
-    const auto count = static_cast<std::size_t>(memory[i + 1]);
-    i += 2;
-    for (std::size_t k = 0; k < count && i + 1 < memory.size(); ++k, i += 2)
-      stretch.emplace_back(memory[i], memory[i + 1]);
-  }
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    for (std::int64_t k = 0; k < counts[i] && at + 1 < stretches.size(); ++k, at += 2)
+      stretch_[ids[i]].emplace_back(stretches[at], stretches[at + 1]);
 }
 
 }  // namespace lbm

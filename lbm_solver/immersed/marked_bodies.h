@@ -80,8 +80,8 @@ class SpringMarkers final : public MarkedBodies {
   /// @param stiffness  κ, force a surface element and stretch, lattice units
   SpringMarkers(const Domain& domain, double stiffness)
       : MarkedBodies(domain), stiffness_(stiffness) {}
-  std::vector<double> memory() const override;
-  void restore(const std::vector<double>& memory) override;
+  Record save() const override;
+  void load(const Record& record) override;
 
  private:
   std::vector<Vec3> changes(const Marked& marked, const std::vector<Vec3>& slip) override;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/immersed/two_step_loads.h"
 
-#include <stdexcept>
+#include <bit>
 
 #include "lbm_solver/field/decomposition.h"
 
 namespace lbm {
 namespace {
 
-constexpr std::size_t kLine = 7;
+constexpr int kLine = 7;  // id, force, torque
 
 }  // namespace
 
@@ -33,23 +33,35 @@ std::vector<BodyLoad> TwoStepLoads::mean(std::span<const Body> bodies,
   return loads;
 }
 
-std::vector<double> TwoStepLoads::lines() const {
+Record TwoStepLoads::save(const Decomposition& ranks) const {
   std::vector<double> lines;
   for (const auto& [id, load] : before_) {
-    lines.push_back(static_cast<double>(id));
+    lines.push_back(std::bit_cast<double>(id));
     for (const Vec3* v : {&load.force, &load.torque})
       lines.insert(lines.end(), v->begin(), v->end());
   }
-  return lines;
+  lines = ranks.collect(lines);
+  std::vector<std::int64_t> ids;
+  std::vector<double> loads;
+  for (auto l = lines.begin(); l != lines.end(); l += kLine) {
+    ids.push_back(std::bit_cast<std::int64_t>(*l));
+    loads.insert(loads.end(), l + 1, l + kLine);
+  }
+  Record record;
+  record.set("ids", std::move(ids));
+  record.set("forces_and_torques", std::move(loads));
+  return record;
 }
 
-void TwoStepLoads::restore(std::span<const double> lines) {
-  if (lines.size() % kLine != 0) throw std::invalid_argument("'loads' is of another size");
+void TwoStepLoads::load(const Record& record) {
+  const auto& ids = record.get<std::vector<std::int64_t>>("ids");
+  const auto& loads = record.list<double>("forces_and_torques", 6 * ids.size());
   before_.clear();
-  for (const double* l = lines.data(); l < lines.data() + lines.size(); l += kLine) {
-    BodyLoad& load = before_[static_cast<std::int64_t>(l[0])];  // ranks hold parts of it
-    load.force += Vec3(l[1], l[2], l[3]);
-    load.torque += Vec3(l[4], l[5], l[6]);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const double* l = &loads[6 * i];
+    BodyLoad& load = before_[ids[i]];  // ranks hold parts of it
+    load.force += Vec3(l[0], l[1], l[2]);
+    load.torque += Vec3(l[3], l[4], l[5]);
   }
   of_all_ranks_ = true;
 }

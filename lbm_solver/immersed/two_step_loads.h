@@ -6,10 +6,13 @@
 #include <unordered_map>
 #include <vector>
 
+#include "lbm_solver/base/record.h"
 #include "lbm_solver/field/domain.h"
 #include "lbm_solver/immersed/body.h"
 
 namespace lbm {
+
+class Decomposition;
 
 /// Loads with a part of those of the step before (load_lag), by the ids of the bodies.
 class TwoStepLoads {
@@ -23,9 +26,9 @@ class TwoStepLoads {
   std::vector<BodyLoad> mean(std::span<const Body> bodies, std::span<const BodyLoad> raw,
                              const Domain& domain, const Block& cells) const;
 
-  /// Loads of the step before on all ranks, a line of seven numbers a body: id, force, torque.
-  std::vector<double> lines() const;
-  void restore(std::span<const double> lines);
+  /// Loads of the step before, complete on rank 0; `load` wants them on every rank. Collective.
+  Record save(const Decomposition& ranks) const;
+  void load(const Record& record);
 
  private:
   double lag_;

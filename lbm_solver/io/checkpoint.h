@@ -1,22 +1,30 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <map>
+#include <cstdint>
+#include <set>
 #include <string>
-#include <vector>
+
+#include "lbm_solver/base/record.h"
 
 namespace lbm {
 
-/// Everything that a run needs to go on as if it had never stopped: named arrays, every bit kept.
-using State = std::map<std::string, std::vector<double>>;
+/// The fluid's part of a checkpoint: an HDF5 file, in which a part of the record is a group, a list
+/// or a text a data set, a number an attribute, each under its name; then a line of text,
+///   BPLBM checkpoint 1 interval K bytes N crc32 C
+/// with K the interval, N the length of the HDF5 file, and C the checksum of everything before it.
 
-/// Writes a state to `path`, whole or not at all: a kill meanwhile leaves the checkpoint before.
-void write_checkpoint(const std::string& path, const State& state);
+/// Writes a record to `path`, whole or not at all: a kill meanwhile leaves the checkpoint before.
+/// @param before  name that the one in `path` gets; empty: it is replaced
+/// @throws std::runtime_error, InputError  the disk is full, say
+void write_checkpoint(const std::string& path, const Record& record, std::int64_t interval,
+                      const std::string& before = {});
 
-/// @throws InputError where the file is missing or no checkpoint
-State read_checkpoint(const std::string& path);
+/// @param without  values of any part that are not wanted, however large
+/// @throws InputError  the file is missing, no checkpoint, of another version, or damaged
+Record read_checkpoint(const std::string& path, const std::set<std::string>& without = {});
 
-/// One array of a checkpoint. @throws InputError where there is no checkpoint
-std::vector<double> read_checkpoint_array(const std::string& path, const std::string& name);
+/// The HDF5 file in a checkpoint, whatever stands behind it. @throws std::runtime_error
+Record read_record(const std::string& path, const std::set<std::string>& without = {});
 
 }  // namespace lbm

@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMark = ".bplbm";
 /// Of a run that has begun: these hold its results, or what it can go on from.
-constexpr std::array kResults{"summary.json",  "probes.csv", "points.csv",
-                              "obstacles.csv", "fields.h5",  "fields.xdmf",
-                              "checkpoint.h5", "fault.h5",   "fields-cut-off.h5"};
+constexpr std::array kResults{
+    "summary.json", "probes.csv",    "points.csv",           "obstacles.csv", "fields.h5",
+    "fields.xdmf",  "checkpoint.h5", "checkpoint.before.h5", "fault.h5",      "fields-cut-off.h5"};
 constexpr std::array kOthers{"lbm.log", "liggghts.log", "lammps.log", "breaks.csv", "plot.log"};
 
 bool is_marked(const fs::path& folder) {

@@ -12,6 +12,7 @@
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
+#include "protocol/checksum.h"
 #include "protocol/input_file.h"
 
 namespace lbm {
@@ -243,6 +244,7 @@ void read_grains(TableReader t, const std::string& scene_file, int d,
   const auto path = std::filesystem::path(scene_file).parent_path() / name;
   if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
     t.fail("file", "= \"" + name + "\": " + problem, "put a table of grains beside the scene");
+  t.note("content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
   std::ifstream table(path);
   std::string line;
   std::getline(table, line);
@@ -292,8 +294,8 @@ InitialScene read_initial(TableReader t, int d) {
 Scene read_scene(const std::vector<std::string>& files) {
   toml::table merged = parse(files.front());
   for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
-  TableReader root(merged, "", files.front());
   Scene scene;
+  TableReader root(merged, "", files.front(), &scene.settings);
   scene.file = fmt::format("{}", fmt::join(files, " + "));
   scene.title = root.text_or("title", std::filesystem::path(files.front()).stem().string());
   scene.box = read_box(root.table("box"));

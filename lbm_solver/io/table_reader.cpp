@@ -5,8 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <sstream>
 #include <utility>
 
@@ -57,8 +59,17 @@ std::size_t distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-TableReader::TableReader(const toml::table& table, std::string path, std::string file)
-    : table_(table), path_(std::move(path)), file_(std::move(file)) {}
+TableReader::TableReader(const toml::table& table, std::string path, std::string file,
+                         std::map<std::string, std::string>* settings)
+    : table_(table),
+      path_(std::move(path)),
+      file_(std::move(file)),
+      name_(path_),
+      settings_(settings) {}
+
+void TableReader::note(const std::string& key, const std::string& value) const {
+  if (settings_) (*settings_)[name_.empty() ? key : name_ + "." + key] = value;
+}
 
 std::string TableReader::where(const toml::node* node, const std::string& key) const {
   const std::string full = path_.empty() ? key : path_ + "." + key;
@@ -94,13 +105,13 @@ const toml::node& TableReader::need(const std::string& key, const std::string& w
 TableReader TableReader::table(const std::string& key) {
   const toml::node& node = need(key, "a table [" + key + "]");
   if (!node.is_table()) fail(key, "= " + shown(node) + " is no table", "write [" + key + "]");
-  return {*node.as_table(), path_.empty() ? key : path_ + "." + key, file_};
+  return {*node.as_table(), path_.empty() ? key : path_ + "." + key, file_, settings_};
 }
 
 TableReader TableReader::optional_table(const std::string& key) {
   asked_.insert(key);
   if (has(key)) return table(key);
-  return {no_table(), path_.empty() ? key : path_ + "." + key, file_};
+  return {no_table(), path_.empty() ? key : path_ + "." + key, file_, settings_};
 }
 
 std::vector<TableReader> TableReader::tables(const std::string& key) {
@@ -108,8 +119,10 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   const toml::node* node = find(key);
   if (!node) return result;
   if (!node->is_array_of_tables()) fail(key, "is no list of tables", "write [[" + key + "]]");
-  for (const toml::node& entry : *node->as_array())
-    result.emplace_back(*entry.as_table(), key, file_);
+  for (const toml::node& entry : *node->as_array()) {
+    result.emplace_back(*entry.as_table(), key, file_, settings_);
+    result.back().name_ = fmt::format("{}.{}", key, result.size());
+  }
   return result;
 }
 
@@ -128,16 +141,23 @@ double TableReader::to_number(const toml::node& node, const std::string& key, co
 }
 
 double TableReader::number(const std::string& key, const Bounds& bounds, const std::string& unit) {
-  return to_number(need(key, bounds_text(bounds, unit)), key, bounds, unit);
+  const double value = to_number(need(key, bounds_text(bounds, unit)), key, bounds, unit);
+  note(key, fmt::format("{}", value));
+  return value;
 }
 double TableReader::number_or(const std::string& key, double fallback, const Bounds& bounds,
                               const std::string& unit) {
-  return optional_number(key, bounds, unit).value_or(fallback);
+  const double value = optional_number(key, bounds, unit).value_or(fallback);
+  note(key, fmt::format("{}", value));
+  return value;
 }
 std::optional<double> TableReader::optional_number(const std::string& key, const Bounds& bounds,
                                                    const std::string& unit) {
   const toml::node* node = find(key);
-  return node ? std::optional(to_number(*node, key, bounds, unit)) : std::nullopt;
+  if (!node) return std::nullopt;
+  const double value = to_number(*node, key, bounds, unit);
+  note(key, fmt::format("{}", value));
+  return value;
 }
 
 std::optional<int> TableReader::optional_integer(const std::string& key, int least) {
@@ -147,23 +167,26 @@ std::optional<int> TableReader::optional_integer(const std::string& key, int lea
   if (!value || *value < least || *value > 1000000000)
     fail(key, fmt::format("= {} is no such number", shown(*node)),
          fmt::format("give a whole number from {}", least));
+  note(key, fmt::format("{}", *value));
   return static_cast<int>(*value);
 }
 
 bool TableReader::flag_or(const std::string& key, bool fallback) {
   const toml::node* node = find(key);
-  if (!node) return fallback;
-  if (!node->is_boolean())
+  if (node && !node->is_boolean())
     fail(key, fmt::format("= {} is neither true nor false", shown(*node)), "give true or false");
-  return *node->value<bool>();
+  const bool value = node ? *node->value<bool>() : fallback;
+  note(key, value ? "true" : "false");
+  return value;
 }
 
 std::string TableReader::text_or(const std::string& key, const std::string& fallback) {
   const toml::node* node = find(key);
-  if (!node) return fallback;
-  if (!node->is_string())
+  if (node && !node->is_string())
     fail(key, fmt::format("= {} is no text", shown(*node)), "put it in quotation marks");
-  return *node->value<std::string>();
+  const std::string value = node ? *node->value<std::string>() : fallback;
+  note(key, value);
+  return value;
 }
 
 std::string TableReader::choice_or(const std::string& key, const std::string& fallback,
@@ -176,6 +199,10 @@ std::string TableReader::choice_or(const std::string& key, const std::string& fa
 }
 
 namespace {
+
+std::string values_text(std::span<const double> values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
 
 std::string vector_text(int dimension, const std::string& unit) {
   return (dimension == 2 ? "[x, y] " : "[x, y, z] ") + unit;
@@ -201,11 +228,15 @@ Vec3 TableReader::to_vector(const toml::node& node, const std::string& key, int 
 }
 
 Vec3 TableReader::vector(const std::string& key, int dimension, const std::string& unit) {
-  return to_vector(need(key, vector_text(dimension, unit)), key, dimension, unit);
+  const Vec3 v = to_vector(need(key, vector_text(dimension, unit)), key, dimension, unit);
+  note(key, values_text({v.data(), static_cast<std::size_t>(dimension)}));
+  return v;
 }
 Vec3 TableReader::vector_or_zero(const std::string& key, int dimension, const std::string& unit) {
   const toml::node* node = find(key);
-  return node ? to_vector(*node, key, dimension, unit) : Vec3();
+  const Vec3 v = node ? to_vector(*node, key, dimension, unit) : Vec3();
+  note(key, values_text({v.data(), static_cast<std::size_t>(dimension)}));
+  return v;
 }
 
 std::vector<Vec3> TableReader::vectors_or_none(const std::string& key, int dimension,
@@ -218,6 +249,10 @@ std::vector<Vec3> TableReader::vectors_or_none(const std::string& key, int dimen
     fail(key, fmt::format("= {} is no list of points", shown(*node)),
          dimension == 2 ? "give [[x, y], …] " + unit : "give [[x, y, z], …] " + unit);
   for (const toml::node& point : *array) result.push_back(to_vector(point, key, dimension, unit));
+  std::vector<std::string> points;
+  for (const Vec3& v : result)
+    points.push_back(values_text({v.data(), static_cast<std::size_t>(dimension)}));
+  note(key, fmt::format("[{}]", fmt::join(points, ", ")));
   return result;
 }
 
@@ -225,11 +260,15 @@ std::vector<double> TableReader::numbers_or(const std::string& key,
                                             const std::vector<double>& fallback,
                                             const Bounds& bounds, const std::string& unit) {
   const toml::node* node = find(key);
-  if (!node) return fallback;
-  if (!node->is_array()) return {to_number(*node, key, bounds, unit)};
-  std::vector<double> values;
-  for (const auto& item : *node->as_array()) values.push_back(to_number(item, key, bounds, unit));
-  if (values.empty()) fail(key, "is empty", "give a number or a list of numbers");
+  std::vector<double> values = fallback;
+  if (node && !node->is_array()) {
+    values = {to_number(*node, key, bounds, unit)};
+  } else if (node) {
+    values.clear();
+    for (const auto& item : *node->as_array()) values.push_back(to_number(item, key, bounds, unit));
+    if (values.empty()) fail(key, "is empty", "give a number or a list of numbers");
+  }
+  note(key, values_text(values));
   return values;
 }
 
@@ -237,6 +276,7 @@ Range TableReader::range(const std::string& key, const Bounds& bounds, const std
   const toml::node& node = need(key, bounds_text(bounds, unit) + ", or [smallest, largest]");
   if (!node.is_array()) {
     const double value = to_number(node, key, bounds, unit);
+    note(key, values_text(std::array{value, value}));
     return {value, value};
   }
   const Vec3 pair = to_vector(node, key, 2, unit);
@@ -246,6 +286,7 @@ Range TableReader::range(const std::string& key, const Bounds& bounds, const std
            "give [smallest, largest], each " + bounds_text(bounds, unit));
   if (pair.x() > pair.y())
     fail(key, fmt::format("= {} is reversed", shown(node)), "give [smallest, largest]");
+  note(key, values_text({pair.data(), 2}));
   return {pair.x(), pair.y()};
 }
 
@@ -261,6 +302,7 @@ std::map<std::string, std::string> TableReader::all_as_text() {
     else
       fail(name, fmt::format("= {} is neither number nor text", shown(node)),
            "a script variable is a number or a text");
+    note(name, result[name]);
   }
   return result;
 }

@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -27,7 +28,12 @@ struct Bounds {
 /// asked for. All errors are InputError and name file, line, key, value and remedy.
 class TableReader {
  public:
-  TableReader(const toml::table& table, std::string path, std::string file);
+  /// @param settings  gets every value that is asked for, defaults too, under its full key
+  TableReader(const toml::table& table, std::string path, std::string file,
+              std::map<std::string, std::string>* settings = nullptr);
+
+  /// Puts a value among the settings that is no key of the table.
+  void note(const std::string& key, const std::string& value) const;
 
   bool has(const std::string& key) {
     known_.insert(key);
@@ -83,6 +89,8 @@ class TableReader {
 
   const toml::table& table_;
   std::string path_, file_;
+  std::string name_;  // path_, of a table of a list with its number from 1
+  std::map<std::string, std::string>* settings_;
   std::set<std::string> asked_;  // keys whose values were wanted
   std::set<std::string> known_;  // also those that were only looked for
 };

@@ -339,75 +339,71 @@ void each_cell(const Cell3& n, F&& f) {
 
 }  // namespace
 
-std::map<std::string, std::vector<double>> Fluid::state() const {
-  std::map<std::string, std::vector<double>> state;
+Record Fluid::save_boundary(std::size_t number) const {
+  Patch& patch = *patches_[number];
+  std::vector<double> lines;
+  for (std::size_t k = 0; k < patch.memory().size(); ++k)
+    lines.insert(lines.end(), {static_cast<double>(patch.links()[k].number), patch.memory()[k]});
+  lines = ranks_->collect(lines);
+  std::vector<double> links(lines.size() / 2);
+  for (std::size_t k = 0; k < lines.size(); k += 2)
+    links[static_cast<std::size_t>(lines[k])] = lines[k + 1];
+  Record record;
+  record.set("links", std::move(links));
+  record.set("mass_in", ranks_->collect_parts({patch.mass_in()}));
+  return record;
+}
+
+void Fluid::load_boundary(std::size_t number, const Record& record) {
+  const auto& links = record.get<std::vector<double>>("links");
+  std::vector<double>& memory = patches_[number]->memory();
+  for (std::size_t k = 0; k < memory.size(); ++k) {
+    const auto link = static_cast<std::size_t>(patches_[number]->links()[k].number);
+    if (link >= links.size()) throw std::invalid_argument("'links' is of another size");
+    memory[k] = links[link];
+  }
+  patches_[number]->restore_mass(
+      ranks_->own_part(record.get<std::vector<double>>("mass_in"), 1)[0]);
+}
+
+Record Fluid::save() const {
+  Record record;
   const auto q_count = static_cast<std::size_t>(lattice().Q);
   const Cell3& n = cells().size;
   std::vector<double> mine(q_count * n[0] * n[1] * n[2]);
   each_cell(n, [&](std::size_t number, int x, int y, int z) {
     for (int q = 0; q < lattice().Q; ++q) mine[number * q_count + q] = arriving(q, x, y, z);
   });
-  state["populations"] = ranks_->gather(std::move(mine), lattice().Q);
-  state["clock"] = {static_cast<double>(steps_), stream_.odd() ? 1.0 : 0.0};
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    Patch& patch = *patches_[i];
-    std::vector<double> lines;
-    for (std::size_t k = 0; k < patch.memory().size(); ++k)
-      lines.insert(lines.end(), {static_cast<double>(patch.links()[k].number), patch.memory()[k]});
-    lines = ranks_->collect(lines);
-    double mass = patch.mass_in();
-    ranks_->sum({&mass, 1});
-    std::vector<double>& values = state["patch" + std::to_string(i)];
-    values.assign(lines.size() / 2, 0.0);
-    for (std::size_t k = 0; k < lines.size(); k += 2)
-      values[static_cast<std::size_t>(lines[k])] = lines[k + 1];
-    values.push_back(mass);
-  }
-  if (scheme_) state["scheme"] = scheme_->memory();
+  record.set("populations", ranks_->gather(std::move(mine), lattice().Q));
+  record.set("steps", steps_);
+  record.set("odd", std::int64_t{stream_.odd()});
+  for (std::size_t i = 0; i < patches_.size(); ++i)
+    record.set("boundary" + std::to_string(i + 1), save_boundary(i));
+  if (scheme_) record.set("scheme", scheme_->save());
   if (two_steps_.on()) {
     TwoStepLoads last = two_steps_;
     if (loads_are_new_) last.remember(bodies_, cover_->loads());
-    state["loads"] = ranks_->collect(last.lines());
+    record.set("loads", last.save(*ranks_));
   }
-  return state;
+  return record;
 }
 
-void Fluid::restore(const std::map<std::string, std::vector<double>>& state) {
-  const auto find = [&state](const std::string& name) -> const std::vector<double>& {
-    const auto found = state.find(name);
-    if (found == state.end()) throw std::invalid_argument("'" + name + "' is missing");
-    return found->second;
-  };
-  const auto expect = [](bool right, const std::string& name) {
-    if (!right) throw std::invalid_argument("'" + name + "' is of another size");
-  };
-  const auto& clock = find("clock");
-  expect(clock.size() == 2, "clock");
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const std::string name = "patch" + std::to_string(i);
-    const auto& values = find(name);
-    std::vector<double>& memory = patches_[i]->memory();
-    for (std::size_t k = 0; k < memory.size(); ++k) {
-      const auto number = static_cast<std::size_t>(patches_[i]->links()[k].number);
-      expect(number + 1 < values.size(), name);
-      memory[k] = values[number];
-    }
-    expect(!values.empty(), name);
-    patches_[i]->restore_mass(ranks_->rank() == 0 ? values.back() : 0.0);
-  }
-  if (scheme_) scheme_->restore(find("scheme"));
+void Fluid::load(const Record& record) {
+  for (std::size_t i = 0; i < patches_.size(); ++i)
+    load_boundary(i, record.part("boundary" + std::to_string(i + 1)));
+  if (scheme_) scheme_->load(record.part("scheme"));
   if (two_steps_.on()) {
-    two_steps_.restore(find("loads"));
+    two_steps_.load(record.part("loads"));
     loads_are_new_ = false;
   }
   const Cell3 n = cells().size, all = domain().cells();
   const auto q_count = static_cast<std::size_t>(lattice().Q);
-  std::vector<double> populations = find("populations");
-  expect(ranks_->rank() != 0 || populations.size() == q_count * all[0] * all[1] * all[2],
-         "populations");
+  std::vector<double> populations;
+  if (ranks_->rank() == 0)
+    populations = record.list<double>("populations", q_count * all[0] * all[1] * all[2]);
   populations = ranks_->scatter(std::move(populations), lattice().Q);
-  steps_ = static_cast<std::int64_t>(clock[0]);
-  stream_.set_odd(clock[1] != 0.0);
+  steps_ = record.integer("steps");
+  stream_.set_odd(record.integer("odd") != 0);
   if (force_in_time_.ramp_steps > 0.0) set_body_force();
   each_cell(n, [&](std::size_t number, int x, int y, int z) {
     for (int q = 0; q < lattice().Q; ++q) arriving(q, x, y, z) = populations[number * q_count + q];

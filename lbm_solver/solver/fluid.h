@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "lbm_solver/base/record.h"
 #include "lbm_solver/boundary/patch.h"
 #include "lbm_solver/field/halo_exchange.h"
 #include "lbm_solver/immersed/body_scheme.h"
@@ -115,12 +116,12 @@ class Fluid {
   /// @param rho, u  [nx] each, overwritten
   void row(int y, int z, std::span<double> rho, const RowVelocity& u);
 
-  /// Everything that the coming steps depend on, as named arrays that know nothing of the ranks;
-  /// complete on rank 0. Obstacles and boundaries must be in place again before `restore`, which
-  /// wants the same arrays on every rank but `populations`, which rank 0 alone needs. Collective.
-  /// @throws std::invalid_argument where the state is of another fluid
-  std::map<std::string, std::vector<double>> state() const;
-  void restore(const std::map<std::string, std::vector<double>>& state);
+  /// Everything that the coming steps depend on; it knows nothing of the ranks, and is complete on
+  /// rank 0. Obstacles and boundaries must be in place again before `load`, which wants the same
+  /// record on every rank but for `populations`, which rank 0 alone needs. Collective.
+  /// @throws std::invalid_argument where the record is of another fluid
+  Record save() const;
+  void load(const Record& record);
 
   /// Bytes that its parts take on all ranks: "populations" and, where covered cells are, "solids".
   /// Collective.
@@ -132,6 +133,8 @@ class Fluid {
   void make_steps_under_force(std::int64_t steps);
   void set_body_force();
   void remember_loads();
+  Record save_boundary(std::size_t number) const;
+  void load_boundary(std::size_t number, const Record& record);
   void moments(int y, int z, std::span<double> rho, const RowVelocity& u, std::span<double> solid);
   void cover_by(const Body& body, int y, int z, const RowVelocity& u, std::span<double> solid);
 

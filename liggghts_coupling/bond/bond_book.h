@@ -72,10 +72,11 @@ struct BondBook {
   long first_step = 0;             ///< at which time is 0: in a coupled run the fluid's
   EnergyFlow energy;               ///< elastic now, the rest since the beginning [J]
   std::vector<BreakEvent> events;  ///< not yet written
+  long written_until = -1;         ///< step; those up to it are written; -1: nobody says so
   bool list_wanted = false;        ///< the coming force computations list the intact bonds
   std::vector<std::pair<long, long>>
       listed;                      ///< intact at the last force computation, where wanted
-  std::vector<BreakEvent> broken;  ///< all since the beginning of this process
+  std::vector<BreakEvent> broken;  ///< all since the beginning of the run
 };
 
 }  // namespace dem

@@ -80,7 +80,10 @@ int FixBondBreaks::setmask() {
 
 void FixBondBreaks::init() {
   if (comm->me != 0 || file_) return;
-  open(update->ntimestep > 0 ? kept_lines(path_, static_cast<long>(update->ntimestep)) : "");
+  // breaks that were not written yet when the run was stopped, the ledger has
+  const long ledger = BondBook::instance().written_until;
+  const auto now = static_cast<long>(update->ntimestep);
+  open(now > 0 ? kept_lines(path_, ledger >= 0 ? ledger : now) : "");
 }
 
 /// The coupled run has begun since: what was written before it lies before the time 0.
@@ -127,6 +130,7 @@ void FixBondBreaks::write() {
   MPI_Gatherv(mine.data(), bytes, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE, 0,
               world);
   mine.clear();
+  BondBook::instance().written_until = static_cast<long>(update->ntimestep);
   std::sort(all.begin(), all.end(), [](const BreakEvent& a, const BreakEvent& b) {
     return std::tuple(a.step, a.first, a.second) < std::tuple(b.step, b.first, b.second);
   });

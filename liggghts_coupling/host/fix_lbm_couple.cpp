@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "liggghts_coupling/bond/bond_book.h"
 #include "liggghts_coupling/bond/leaving.h"
@@ -52,6 +53,7 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     Coupling::instance().session->set_timeout(*timeout_);
     protocol::limit_waits(*timeout_);
   }
+  BondBook::instance().list_wanted = true;  // with the first states, too
   if (!record_.empty()) begin_recording();
 }
 
@@ -125,6 +127,7 @@ void FixLbmCouple::init() {
                        modify->fix[i]->id, style));
     if (holds) held_still_ |= modify->fix[i]->groupbit;
   }
+  if (Coupling::instance().session->fluid().features & protocol::kCheckpoints) note_particles();
 }
 
 /// Before LIGGGHTS looks for neighbours, which may take it minutes.
@@ -138,8 +141,9 @@ void FixLbmCouple::setup_pre_exchange() {
 
 void FixLbmCouple::setup(int vflag) {
   if (settling_again_) {
-    write_checkpoint();
-    send_states();
+    const bool write = std::exchange(checkpoint_asked_, false);
+    if (write) write_checkpoint();
+    send_states(write ? protocol::kCheckpoint : protocol::kContinue);
     if (!overlapped_ && !Coupling::instance().over) take_loads(false);
     post_force(vflag);
     return;
@@ -241,7 +245,7 @@ void FixLbmCouple::end_of_step() {
   if ((update->ntimestep - first_step_) % substeps_ != 0) return;
   ++interval_;
   if (underway_) take_loads(true);  // overlapped: of the interval that ends, for the next one
-  if (checkpoint_asked_) {
+  if (settle_asked_ || checkpoint_asked_) {
     settle_again();
   } else {
     send_states();
@@ -300,13 +304,12 @@ protocol::SolidReport FixLbmCouple::report() const {
   return report;
 }
 
-void FixLbmCouple::send_states() {
+void FixLbmCouple::send_states(std::uint32_t flags) {
   Coupling& coupling = Coupling::instance();
   ScriptChecks(lmp).expect_box(coupling.session->fluid());
   gather();
   const double interval = update->dt * substeps_;
-  const std::uint32_t flags =
-      (stop_asked_ ? protocol::kLast : 0U) | (settling_again_ ? protocol::kCheckpoint : 0U);
+  if (stop_asked_) flags |= protocol::kLast;
   const auto corner = [](const double* x) { return protocol::Vec3{x[0], x[1], x[2]}; };
   coupling.session->set({update->dt, corner(domain->boxlo), corner(domain->boxhi)});
   coupling.session->send({interval_, static_cast<double>(interval_) * interval, flags}, states_,
@@ -338,6 +341,7 @@ void FixLbmCouple::take_loads(bool add_change) {
   const auto reply = collect();
   underway_ = false;
   stop_asked_ = reply.flags & protocol::kStop;
+  settle_asked_ = reply.flags & protocol::kSettle;
   checkpoint_asked_ = reply.flags & protocol::kCheckpoint;
   BondBook::instance().list_wanted = reply.flags & protocol::kWantBonds;
   if (!overlapped_) {
@@ -381,20 +385,6 @@ void FixLbmCouple::forward(std::vector<protocol::Load>& orphans, bool add_change
     const int i = atom->map(static_cast<int>(load.id));
     if (i >= 0 && i < atom->nlocal) hold(i, load, add_change);
   }
-}
-
-// ---- what a restart file keeps beside the particles --------------------------------------------
-
-void FixLbmCouple::write_restart(FILE* file) {
-  std::int64_t all = 0;
-  MPI_Reduce(&left_, &all, 1, MPI_INT64_T, MPI_SUM, 0, world);
-  if (comm->me != 0) return;
-  const int size = sizeof all;
-  std::fwrite(&size, sizeof size, 1, file);
-  std::fwrite(&all, size, 1, file);
-}
-void FixLbmCouple::restart(char* buffer) {
-  if (comm->me == 0) std::memcpy(&left_, buffer, sizeof left_);  // a sum over all ranks
 }
 
 // ---- held loads travel with their particles ---------------------------------------------------

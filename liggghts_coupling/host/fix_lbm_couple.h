@@ -3,6 +3,7 @@
 
 #include <fix.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,9 +20,10 @@ namespace dem {
 /// adds at every step. An id that passes to another particle (delete_atoms renumbers) gets another
 /// epoch, as does a particle that the script puts elsewhere between runs. The held loads migrate
 /// with the particles, are kept in restart files, and can be dumped as f_ID[1] … f_ID[6]. A script
-/// may have several runs, and insert or delete particles between them. Where the fluid asks for a
-/// checkpoint, LIGGGHTS is set up anew at that step, as a restart would, and writes its restart
-/// file: the run goes on to the bit as one that was started from it.
+/// may have several runs, and insert or delete particles between them. At the times at
+/// which a run may be stopped, LIGGGHTS is set up anew at that step, as a restart would, and writes
+/// its restart file where the fluid asks for one: the run goes on to the bit as one that was
+/// started from it. The ledger of broken bonds is part of it.
 class FixLbmCouple final : public LAMMPS_NS::Fix {
  public:
   FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
@@ -35,6 +37,16 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void post_force(int vflag) override;
   void end_of_step() override;
   void post_run() override;
+
+  // LIGGGHTS asks every fix which particles may be there, and takes its cut-offs from that
+  double min_rad(int type) override {
+    return type_radii_.contains(type) ? type_radii_[type].lo : 0;
+  }
+  double max_rad(int type) override {
+    return type_radii_.contains(type) ? type_radii_[type].hi : 0;
+  }
+  int min_type() override { return type_radii_.empty() ? 0 : type_radii_.begin()->first; }
+  int max_type() override { return type_radii_.empty() ? 0 : type_radii_.rbegin()->first; }
 
   void write_restart(FILE* file) override;
   void restart(char* buffer) override;
@@ -64,7 +76,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void begin();
   void go_on() const;
   void begin_anew_where_moved() const;
-  void send_states();
+  void send_states(std::uint32_t flags = protocol::kContinue);
   protocol::SolidSession::Reply collect();
   void take_loads(bool add_change);
   void hold(int i, const protocol::Load& load, bool add_change);
@@ -72,6 +84,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void settle_again();
   void write_checkpoint();
   void keep_last_state(const std::exception& error);
+  void note_particles();
   void write_part(protocol::SolidParts& parts);
   [[noreturn]] void fail(const std::string& text) const;
 
@@ -86,11 +99,15 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   double waited_before_ = 0.0;                   ///< [s], until the first step
   std::int64_t interval_ = 0;
   std::int64_t left_ = 0;  ///< particles, since the beginning of the coupled run, of this process
-  bool stop_asked_ = false, checkpoint_asked_ = false;
+  bool stop_asked_ = false, settle_asked_ = false, checkpoint_asked_ = false;
   bool overlapped_ = false;  ///< loads are taken at the end of their interval
   bool underway_ = false;    ///< loads of the states sent last have not been taken
   bool set_up_ = false;
-  bool settling_again_ = false;                ///< in settle_again
+  bool settling_again_ = false;  ///< in settle_again
+  /// Smallest and largest of each type that was there when a run began, where the scene has
+  /// checkpoints [m]: a run that goes on must find its neighbours in the same way when they have
+  /// left.
+  std::map<int, protocol::Range> type_radii_;
   std::optional<protocol::SolidParts> parts_;  ///< once the two have agreed
   std::vector<protocol::State> states_;        // buffers of one exchange
   std::vector<protocol::Shape> shapes_;

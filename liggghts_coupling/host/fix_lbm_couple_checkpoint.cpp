@@ -10,8 +10,13 @@
 #include <update.h>
 #include <write_restart.h>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
 
+#include "liggghts_coupling/bond/bond_ledger.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
 #include "protocol/file_catcher.h"
@@ -19,11 +24,17 @@
 
 namespace dem {
 
+namespace {
+
+constexpr const char* kHeading = "BPLBM solid 1";
+
+}  // namespace
+
 /// What a run does when it begins, in the order of LIGGGHTS' Verlet::setup, in the middle of one:
 /// particles sorted and distributed, neighbours found, forces computed. Ends in setup() above.
 void FixLbmCouple::settle_again() {
   settling_again_ = true;
-  checkpoint_asked_ = false;
+  settle_asked_ = false;
   modify->setup_pre_exchange();
   domain->pbc();
   domain->reset_box();
@@ -72,6 +83,78 @@ void FixLbmCouple::write_part(protocol::SolidParts& parts) {
   std::string name = file ? file->path() : "";
   LAMMPS_NS::WriteRestart(lmp).write(name.data());
   if (file) parts.keep(interval_, file->take());
+}
+
+void FixLbmCouple::note_particles() {
+  const int types = atom->ntypes;
+  std::vector<double> least(types, 1e300), most(types, 0.0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int type = atom->type[i] - 1;
+    least[type] = std::min(least[type], atom->radius[i]);
+    most[type] = std::max(most[type], atom->radius[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, least.data(), types, MPI_DOUBLE, MPI_MIN, world);
+  MPI_Allreduce(MPI_IN_PLACE, most.data(), types, MPI_DOUBLE, MPI_MAX, world);
+  for (int type = 1; type <= types; ++type) {
+    if (most[type - 1] <= 0.0) continue;
+    const auto& [here, first] =
+        type_radii_.try_emplace(type, protocol::Range{least[type - 1], most[type - 1]});
+    here->second.lo = std::min(here->second.lo, least[type - 1]);
+    here->second.hi = std::max(here->second.hi, most[type - 1]);
+  }
+}
+
+/// Beside the particles, a line of text a value: the coupling interval, radii by type, particles
+/// that have left, the ledger of bonds.
+void FixLbmCouple::write_restart(FILE* file) {
+  const std::string ledger = save_ledger(world);
+  std::int64_t left = 0;
+  MPI_Reduce(&left_, &left, 1, MPI_INT64_T, MPI_SUM, 0, world);
+  if (comm->me != 0) return;
+  std::string text = fmt::format("{}\ninterval {}\n", kHeading, interval_);
+  for (const auto& [type, radii] : type_radii_)
+    text += fmt::format("radii {} {} {}\n", type, radii.lo, radii.hi);
+  text += fmt::format("left {}\n", left) + ledger;
+  const int size = static_cast<int>(text.size()) + 1;  // with the zero at its end
+  std::fwrite(&size, sizeof size, 1, file);
+  std::fwrite(text.c_str(), 1, static_cast<std::size_t>(size), file);
+}
+
+void FixLbmCouple::restart(char* buffer) {
+  const std::string text = buffer;
+  std::istringstream lines(text);
+  std::string heading, name;
+  std::int64_t interval = -1;
+  std::getline(lines, heading);
+  lines >> name >> interval >> std::ws;
+  const std::int64_t begin = Coupling::instance().session->fluid().first_interval;
+  if (heading != kHeading || name != "interval" || !lines)
+    fail("the restart file is of another version; start again without --restart");
+  if (begin > 0 && interval != begin)
+    fail(
+        fmt::format("the restart file is of interval {}, the fluid goes on from interval {}: one "
+                    "of the two parts of the checkpoint is not its own",
+                    interval, begin));
+  auto rest = lines.tellg();
+  while (lines >> name && (name == "radii" || name == "left")) {
+    if (name == "left") {
+      std::int64_t left = 0;
+      lines >> left >> std::ws;
+      left_ = comm->me == 0 ? left : 0;  // a sum over all ranks
+      rest = lines.tellg();
+      continue;
+    }
+    int type = 0;
+    protocol::Range radii;
+    lines >> type >> radii.lo >> radii.hi >> std::ws;
+    type_radii_[type] = radii;
+    rest = lines.tellg();
+  }
+  try {
+    load_ledger(text.substr(static_cast<std::size_t>(rest)), world);
+  } catch (const std::invalid_argument& error) {
+    fail(std::string("the restart file cannot be read: ") + error.what());
+  }
 }
 
 }  // namespace dem

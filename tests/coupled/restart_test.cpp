@@ -84,7 +84,8 @@ TEST_F(RestartTest, SaysWhatIsWrong) {
                 replaced(scene("checkpoint_every = 0.5"), "cell = 0.01 ", "cell = 0.005 "));
   job = run("--out some --restart");
   EXPECT_EQ(job.exit_code, 2);
-  EXPECT_NE(job.output.find("another grid or step"), std::string::npos) << job.output;
+  EXPECT_NE(job.output.find("numerics.cell: 0.01 then, 0.005 now"), std::string::npos)
+      << job.output;
 }
 
 }  // namespace

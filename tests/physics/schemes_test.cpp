@@ -160,11 +160,11 @@ TEST(SpringScheme, RemembersItsStretchInACheckpoint) {
   };
   Fluid one = make(c, domain, "trt", 0.8, {1e-6, 0.0});
   run(one, 50);
-  const auto state = one.state();
+  const auto state = one.save();
   run(one, 50);
   Fluid two = make(c, domain, "trt", 0.8, {1e-6, 0.0});
   two.place(discs);
-  two.restore(state);
+  two.load(state);
   run(two, 50);
   EXPECT_EQ(one.loads()[0].force, two.loads()[0].force);
   EXPECT_EQ(one.arriving(3, 14, 20), two.arriving(3, 14, 20));

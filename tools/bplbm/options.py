@@ -63,6 +63,8 @@ def parser():
     p.add_argument("--until", type=seconds, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
     p.add_argument("--restart", action="store_const", const="checkpoint", help="go on from the checkpoint in --out")
+    p.add_argument("--accept", action="append", default=[], metavar="KEY",
+                   help="with --restart: a key or table of the scene that may have changed, e.g. fluid.body_force")
     p.add_argument("--restart=fault", dest="restart", action="store_const", const="fault",
                    help="go on from the states that both programs kept at a fault")
     p.add_argument("--out", metavar="DIR", help="a new, an empty or an earlier run's folder; default: "
@@ -96,6 +98,8 @@ def arguments(words):
         fail(f"{scene.name} has no variant '{args.variant}'; there are: {', '.join(scene.variants()) or 'none'}")
     if args.threads > MOST_THREADS:
         fail(f"--threads {args.threads}: a rank takes at most {MOST_THREADS}; take more --fluid-ranks")
+    if args.accept and not args.restart:
+        fail("--accept says what a restart may change; give it with --restart")
     if args.force and args.restart:
         fail("--force replaces an earlier run and --restart goes on from it; give one of them")
     for overlay in args.overlay:

@@ -11,7 +11,7 @@ import pathlib
 import socket
 
 MARK, LOCK = ".bplbm", ".bplbm.lock"
-RESULTS = ("summary.json", "checkpoint.h5", "fault.h5", "probes.csv", "points.csv", "obstacles.csv", "fields.h5")
+RESULTS = ("summary.json", "checkpoint.h5", "checkpoint.before.h5", "fault.h5", "probes.csv", "points.csv", "obstacles.csv", "fields.h5")
 
 
 class Refused(Exception):

@@ -31,6 +31,7 @@ def command(args, out):
     fluid += ["--force"] if args.force else []
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
     fluid += [f"--restart={args.restart}"] if args.restart else []
+    fluid += [word for key in args.accept for word in ("--accept", key)]
     first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
     solid = solid_command(args, out)
     return first + ([":", "-np", str(args.solid_ranks), *solid] if solid else [])

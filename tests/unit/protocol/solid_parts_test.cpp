@@ -32,26 +32,26 @@ class SolidPartsTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(SolidPartsTest, KeepsTheLastTwo) {
+// Until the fluid has its part of the last one, the pair before it and the one before that matter.
+TEST_F(SolidPartsTest, KeepsTheLastThree) {
   SolidParts parts(folder_.path() + "/checkpoint");
-  for (const int interval : {3, 6, 9}) write(parts, interval);
-  EXPECT_EQ(files(), (Names{"checkpoint.6.solid", "checkpoint.9.solid"}));
+  for (const int interval : {3, 6, 9, 12}) write(parts, interval);
+  EXPECT_EQ(files(), (Names{"checkpoint.12.solid", "checkpoint.6.solid", "checkpoint.9.solid"}));
   EXPECT_EQ(test::read_file(parts.name(9)), kText);
 }
 
-// Until the fluid has its part of the next one, a restarted run may need to begin there again.
-TEST_F(SolidPartsTest, KeepsWhatARunWentOnFrom) {
+// A run that went on from 6 comes to 8: 9 was damaged, say, and will not be gone on from.
+TEST_F(SolidPartsTest, OfARunThatWentOnKeepsThoseBeforeIt) {
   Hello fluid;
   fluid.first_interval = 6;
-  const std::string part = folder_.write("checkpoint.6.solid", "states");
-  folder_.write("checkpoint.3.solid", "states");
-  folder_.write("notes.txt", "not a checkpoint");
-  for (const std::string& file : {part, std::filesystem::relative(part).string()}) {
-    fluid.variables = {{"checkpoint", folder_.path() + "/checkpoint"}, {"restart_file", file}};
-    SolidParts parts = SolidParts::of(fluid);
-    write(parts, 9);
-    EXPECT_EQ(files(), (Names{"checkpoint.6.solid", "checkpoint.9.solid", "notes.txt"}));
-  }
+  for (const char* name : {"checkpoint.1.solid", "checkpoint.3.solid", "checkpoint.6.solid",
+                           "checkpoint.9.solid", "checkpoint.9.solid.mine", "notes.txt"})
+    folder_.write(name, "states");
+  fluid.variables = {{"checkpoint", folder_.path() + "/checkpoint"}};
+  SolidParts parts = SolidParts::of(fluid);
+  write(parts, 8);
+  EXPECT_EQ(files(), (Names{"checkpoint.3.solid", "checkpoint.6.solid", "checkpoint.8.solid",
+                            "checkpoint.9.solid.mine", "notes.txt"}));
 }
 
 TEST_F(SolidPartsTest, OfAFaultStandBesideThem) {

@@ -104,7 +104,7 @@ class Launch(unittest.TestCase):
 
     def test_the_command_names_both_programs_by_absolute_path(self):
         args = mock.Mock(scene=find("settling_disc"), overlay=[], set="fine", variant="d10", own=[], engine="liggghts", threads=2, until=None,
-                         record=None, restart=False, fluid_ranks=1, solid_ranks=3)
+                         record=None, restart=False, accept=[], fluid_ranks=1, solid_ranks=3)
         line = run.command(args, pathlib.Path("/somewhere"))
         split = line.index(":")
         self.assertTrue(line[line.index("1") + 1].endswith("/bin/lbm"))

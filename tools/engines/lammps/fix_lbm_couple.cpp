@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #include "protocol/file_catcher.h"
 #include "protocol/numbers.h"
@@ -143,8 +144,9 @@ protocol::Hello FixLbmCouple::hello() const {
 void FixLbmCouple::setup(int vflag) {
   Coupling& coupling = Coupling::instance();
   if (settling_again_) {
-    write_part();
-    exchange(false);
+    const bool write = std::exchange(checkpoint_asked_, false);
+    if (write) write_part();
+    exchange(false, write ? protocol::kCheckpoint : protocol::kContinue);
     post_force(vflag);
     return;
   }
@@ -175,7 +177,7 @@ void FixLbmCouple::post_force(int) {
 void FixLbmCouple::end_of_step() {
   if (Coupling::instance().over || (update->ntimestep - first_step_) % substeps_ != 0) return;
   ++interval_;
-  if (checkpoint_asked_)
+  if (settle_asked_ || checkpoint_asked_)
     settle_again();
   else
     exchange(true);
@@ -185,7 +187,8 @@ void FixLbmCouple::end_of_step() {
 /// @param add_change  the force of the step just done acts in the next first half-step as well:
 ///                    replace the old load by the new one there (not in particles whose forces
 ///                    a later fix has set: those would creep)
-void FixLbmCouple::exchange(bool add_change) {
+/// @param flags       of the states
+void FixLbmCouple::exchange(bool add_change, std::uint32_t flags) {
   std::vector<protocol::State> states;
   std::vector<protocol::Shape> shapes;
   std::vector<int> local;
@@ -205,14 +208,14 @@ void FixLbmCouple::exchange(bool add_change) {
   }
   Coupling& coupling = Coupling::instance();
   const double time = static_cast<double>(interval_) * update->dt * substeps_;
-  const std::uint32_t flags =
-      (stop_asked_ ? protocol::kLast : 0U) | (settling_again_ ? protocol::kCheckpoint : 0U);
+  if (stop_asked_) flags |= protocol::kLast;
   const auto corner = [](const double* x) { return protocol::Vec3{x[0], x[1], x[2]}; };
   coupling.session->set({update->dt, corner(domain->boxlo), corner(domain->boxhi)});
   const auto reply = coupling.session->exchange({interval_, time, flags}, states, shapes);
   coupling.over = stop_asked_;
   if (coupling.over) return;
   stop_asked_ = reply.flags & protocol::kStop;
+  settle_asked_ = reply.flags & protocol::kSettle;
   checkpoint_asked_ = reply.flags & protocol::kCheckpoint;
   for (std::size_t n = 0; n < local.size(); ++n) {
     const int i = local[n];
@@ -232,7 +235,7 @@ void FixLbmCouple::exchange(bool add_change) {
 /// particles sorted and distributed, neighbours found, forces computed. Ends in setup() above.
 void FixLbmCouple::settle_again() {
   settling_again_ = true;
-  checkpoint_asked_ = false;
+  settle_asked_ = false;
   update->setupflag = 1;
   modify->setup_pre_exchange();
   domain->pbc();

@@ -55,7 +55,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   static constexpr int kId = 6, kEpoch = 7, kColumns = 8;
   std::vector<protocol::Ball> balls(int group) const;
   protocol::Hello hello() const;
-  void exchange(bool add_change);
+  void exchange(bool add_change, std::uint32_t flags = protocol::kContinue);
   void settle_again();
   void write_part();
 
@@ -65,7 +65,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   int held_still_ = 0;        ///< groups whose forces fix freeze or setforce sets
   LAMMPS_NS::bigint first_step_ = 0;
   std::int64_t interval_ = 0;
-  bool stop_asked_ = false, checkpoint_asked_ = false;
+  bool stop_asked_ = false, settle_asked_ = false, checkpoint_asked_ = false;
   bool settling_again_ = false;                ///< in settle_again
   std::optional<protocol::SolidParts> parts_;  ///< once the two have agreed
 };

@@ -122,7 +122,7 @@ class Solid:
         return loads
 
     def _keep(self, states):
-        """Writes the states of a checkpoint, whole or not at all; the one before stays, the fluid may still need it."""
+        """Writes the states of a checkpoint, whole or not at all; the two before stay, the fluid may need them."""
         prefix = pathlib.Path(self.text("checkpoint"))
         whole = prefix.with_name(f"{prefix.name}.{self.interval}.solid")
         part = whole.with_name(whole.name + ".part")
@@ -133,10 +133,11 @@ class Solid:
         except OSError as error:
             part.unlink(missing_ok=True)
             raise Stop(f"the checkpoint {whole} cannot be written ({error}); is the disk full?") from error
-        for old in prefix.parent.glob(prefix.name + ".*.solid"):
-            if old.name not in (whole.name, self.kept):
-                old.unlink()
-        self.kept = whole.name
+        parts = {int(p.suffixes[-2][1:]): p for p in prefix.parent.glob(prefix.name + ".*.solid")
+                 if len(p.suffixes) > 1 and p.suffixes[-2][1:].isdigit()}
+        newest = sorted(k for k in parts if k <= self.interval)[-3:]
+        for k in parts.keys() - newest:
+            parts[k].unlink()
 
     # ---- the session ---------------------------------------------------------------------------------------------
 
@@ -156,7 +157,6 @@ class Solid:
             self._leave(stop)
         self.variables, self.interval = self.fluid["variables"], self.fluid["first_interval"]
         self.timeout = self.number("coupling_timeout", self.timeout)  # longest wait [s]
-        self.kept = pathlib.Path(self.text("restart_file", "none")).name
         return self
 
     def __exit__(self, kind, error, trace):

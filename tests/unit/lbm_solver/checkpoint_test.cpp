@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Checkpoints as files: what is written is read, and nothing else is.
+#include "lbm_solver/io/checkpoint.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "lbm_solver/base/errors.h"
+#include "lbm_solver/coupling/restart.h"
+#include "lbm_solver/io/scene_reader.h"
+#include "protocol/solid_parts.h"
+#include "tests/support/job.h"
+
+namespace {
+
+using namespace lbm;
+namespace fs = std::filesystem;
+
+Record sample() {
+  Record inner, record;
+  inner.set("ids", std::vector<std::int64_t>{1, -7, (std::int64_t{3} << 60) + 1});
+  inner.set("none", std::vector<double>{});
+  record.set("part", inner);
+  record.set("list", std::vector<double>{0.1, -0.0, 1e-310, 3.0});
+  record.set("number", 0.1);
+  record.set("count", std::int64_t{-5});
+  record.set("text", std::string("[0.1, 0] m³"));
+  record.set("empty", std::string());
+  return record;
+}
+
+class CheckpointFileTest : public testing::Test {
+ protected:
+  std::string path(const std::string& name = "checkpoint.h5") const {
+    return folder_.path() + "/" + name;
+  }
+  static void flip(const std::string& path, std::uint64_t bit) {
+    std::string bytes = test::read_file(path);
+    char& byte = bytes[bit / 8 % bytes.size()];
+    byte = static_cast<char>(byte ^ 1 << bit % 8);
+    std::ofstream(path, std::ios::binary) << bytes;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CheckpointFileTest, IsReadAsItWasWritten) {
+  write_checkpoint(path(), sample(), 7);
+  EXPECT_TRUE(read_checkpoint(path()) == sample());
+  const Record some = read_checkpoint(path(), {"list"});
+  EXPECT_THROW(some.get<std::vector<double>>("list"), std::invalid_argument);
+  EXPECT_THROW(some.integer("number"), std::invalid_argument);
+  EXPECT_THROW(some.part("nothing"), std::invalid_argument);
+  const std::string first = test::read_file(path());
+  write_checkpoint(path(), sample(), 7);
+  EXPECT_TRUE(first == test::read_file(path()));  // equal records are equal files
+}
+
+TEST_F(CheckpointFileTest, KeepsTheOneBefore) {
+  for (const std::int64_t interval : {3, 6, 9}) {
+    Record record;
+    record.set("interval", interval);
+    write_checkpoint(path(), record, interval, path("before.h5"));
+  }
+  EXPECT_EQ(read_checkpoint(path()).integer("interval"), 9);
+  EXPECT_EQ(read_checkpoint(path("before.h5")).integer("interval"), 6);
+}
+
+TEST_F(CheckpointFileTest, EveryBitCounts) {
+  write_checkpoint(path(), sample(), 7);
+  const std::string whole = test::read_file(path());
+  std::mt19937_64 random(1);
+  for (int trial = 0; trial < 500; ++trial) {
+    // half of them in the last line
+    const std::uint64_t bits = 8 * whole.size(), last = 8 * 92;
+    flip(path(), trial % 2 ? random() % bits : bits - 1 - random() % last);
+    EXPECT_THROW(read_checkpoint(path()), InputError) << trial;
+    std::ofstream(path(), std::ios::binary) << whole;
+  }
+  for (std::size_t size = 0; size < whole.size(); size += 97) {
+    std::ofstream(path(), std::ios::binary) << whole.substr(0, size);
+    EXPECT_THROW(read_checkpoint(path()), InputError) << size;
+  }
+}
+
+const std::string kScene = R"(
+[box]
+size = [1.0, 1.0]
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-3
+velocity_scale = 0.1
+[particles]
+diameter = 0.2
+density = 2000.0
+contact_stiffness = 1e4
+[coupling]
+[numerics]
+cell = 0.02
+[run]
+end_time = 1.0
+checkpoint_every = 0.1
+)";
+
+// 50 bits of either part: refused; with the pair before them that one is taken.
+TEST_F(CheckpointFileTest, OfADamagedPairTheOneBeforeIsTaken) {
+  const Scene scene = read_scene({folder_.write("scene.toml", kScene)});
+  const Plan plan = make_plan(scene);
+  protocol::SolidParts parts(folder_.path() + "/checkpoint");
+  for (const std::int64_t interval : {10, 20}) {
+    const std::string states(4000, static_cast<char>(interval));
+    parts.keep(interval, std::as_bytes(std::span(states)));
+    const Record record = checkpoint_record(scene, plan, interval, parts.name(interval));
+    write_checkpoint(fluid_part(folder_.path(), "checkpoint"), record, interval,
+                     fluid_part_before(folder_.path(), "checkpoint"));
+  }
+  const RestartOptions options{"checkpoint", {}};
+  const auto found = find_restart(scene, folder_.path(), options, true);
+  EXPECT_EQ(found->interval, 20);
+  EXPECT_FALSE(found->earlier);
+  EXPECT_NO_THROW(check_same_scene(*found, scene, plan, options));
+  std::mt19937_64 random(2);
+  for (const std::string& part : {path(), parts.name(20)})
+    for (int trial = 0; trial < 50; ++trial) {
+      const std::uint64_t bit = random() >> 8U;
+      flip(part, bit);
+      const auto other = find_restart(scene, folder_.path(), options, true);
+      EXPECT_TRUE(other->earlier) << part << ' ' << bit;
+      EXPECT_EQ(other->interval, 10);
+      EXPECT_NE(other->remark.find(part), std::string::npos) << other->remark;
+      flip(part, bit);
+    }
+  flip(path(), 4321);
+  flip(parts.name(10), 4321);
+  EXPECT_THROW(find_restart(scene, folder_.path(), options, true), InputError);
+}
+
+TEST_F(CheckpointFileTest, NamesEveryKeyOfAScene) {
+  const Scene scene = read_scene({folder_.write("scene.toml", kScene)});
+  EXPECT_EQ(scene.settings.at("fluid.density"), "1000");
+  EXPECT_EQ(scene.settings.at("fluid.body_force"), "[0, 0]");  // a default
+  EXPECT_EQ(scene.settings.at("particles.diameter"), "[0.2, 0.2]");
+  for (const char* key : {"run.end_time", "output.fields_every", "coupling.timeout"})
+    EXPECT_TRUE(may_change(key)) << key;
+  for (const char* key :
+       {"fluid.body_force", "boundary.2.velocity", "particles.variables.friction"})
+    EXPECT_TRUE(may_be_accepted(key)) << key;
+  for (const char* key : {"fluid.density", "boundary.2.side", "box.size", "numerics.cell"})
+    EXPECT_FALSE(may_be_accepted(key) || may_change(key)) << key;
+}
+
+}  // namespace
