@@ -54,6 +54,10 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
       request.listed = read_list(arg[k + 1]);
       wanted_ = static_cast<long>(request.listed->size());
       k += 2;
+    } else if (word == "notch") {
+      need(4);
+      request.notches.push_back(read_notch(arg + k + 1));
+      k += 5;
     } else if (word == "spread") {
       need(1);
       book.spread = argument<double>(error, this, word, arg[k + 1]);
@@ -65,14 +69,27 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
       book.seed = static_cast<unsigned long>(argument<int>(error, this, word, arg[k + 1]));
       k += 2;
     } else {
-      error->fix_error(
-          FLERR, this,
-          ("knows no '" + word + "'; use gap G [types A B] [list FILE] [spread S seed N]").c_str());
+      error->fix_error(FLERR, this,
+                       ("knows no '" + word +
+                        "'; use gap G [types A B] [list FILE] [notch X1 Y1 X2 Y2] "
+                        "[spread S seed N]")
+                           .c_str());
     }
   }
   if (!gap || request.gap < 0.0)
     error->fix_error(FLERR, this, "needs 'gap G', the largest gap in m, at least 0");
+  if (request.listed && !request.notches.empty())
+    error->fix_error(FLERR, this,
+                     "takes 'list' or 'notch'; leave what the notch cuts out of the list");
   book.request = request;
+}
+
+Notch FixBondCreate::read_notch(char** ends) {
+  const auto number = [&](int k) { return argument<double>(error, this, "notch", ends[k]); };
+  const Notch notch{.from = {number(0), number(1)}, .to = {number(2), number(3)}};
+  if (notch.from == notch.to)
+    error->fix_error(FLERR, this, "notch X1 Y1 X2 Y2: its ends are the same point");
+  return notch;
 }
 
 std::set<std::pair<long, long>> FixBondCreate::read_list(const char* path) {

@@ -199,7 +199,10 @@ class BondModel : protected Pointers {
     const BondBook& book = BondBook::instance();
     if (!book.request || !d.computeflag) return false;
     const double exact = overlap < 0.0 ? d.radsum - std::sqrt(d.rsq) : overlap;
-    return book.request->wants(atom->tag[d.i], atom->tag[d.j], d.itype, d.jtype, exact);
+    return book.request->wants({.ids = {atom->tag[d.i], atom->tag[d.j]},
+                                .types = {d.itype, d.jtype},
+                                .centres = {atom->x[d.i], atom->x[d.j]},
+                                .overlap = exact});
   }
 
   void forget(SurfacesIntersectData& d) {

@@ -18,6 +18,13 @@ TEST(BondCreate, ByTypeAndByList) {
   EXPECT_NE(job.output.find("bonds created: 1"), std::string::npos) << job.output;
   job = script.run(three + "fix make all bond/create gap 1e-6 types 1 1\n" + end);
   EXPECT_NE(job.output.find("bonds created: 2"), std::string::npos) << job.output;
+  for (const auto& [notch, bonds] :
+       {std::pair{"notch 0.45 0.4 0.45 0.6", "bonds created: 1"},
+        std::pair{"notch 0.45 0.51 0.45 0.6", "bonds created: 2"},
+        std::pair{"notch 0.45 0.4 0.45 0.6 notch 0.5 0.4 0.6 0.6", "bonds created: 0"}}) {
+    job = script.run(three + "fix make all bond/create gap 1e-6 " + notch + "\n" + end);
+    EXPECT_NE(job.output.find(bonds), std::string::npos) << notch << "\n" << job.output;
+  }
   job = script.run(
       three + "shell echo 1 3 > list.txt\nfix make all bond/create gap 1e-6 list list.txt\n" + end);
   EXPECT_NE(job.exit_code, 0);
@@ -58,6 +65,13 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"exponent", "ledger on", "exponent 2", "exponent is 1 (linear) or 1.5 (Hertz)"},
         Refused{"gap", "bond/create gap 1e-6", "bond/create types 1 1", "needs 'gap G'"},
         Refused{"word", "bond/create gap 1e-6", "bond/create gap 1e-6 glue 3", "knows no 'glue'"},
+        Refused{"point", "gap 1e-6", "gap 1e-6 notch 0 1 0 1", "its ends are the same point"},
+        Refused{"notch", "gap 1e-6", "gap 1e-6 notch 0 1 0", "'notch' lacks its value"},
+        Refused{
+            "listed", "fix make all bond/create gap 1e-6",
+            "shell echo 1 2 > list.txt\nfix make all bond/create gap 1e-6 list list.txt notch 0 0 "
+            "1 1",
+            "leave what the notch cuts out of the list"},
         Refused{"number", "gap 1e-6", "gap 1.2.3", "'gap 1.2.3': give a number"},
         Refused{"whole", "every 100 file", "every 100x file", "'every 100x': give a whole number"},
         Refused{"pipe", "fix make all bond/create gap 1e-6",
