@@ -98,6 +98,8 @@ def drive_text(scene):
 def read_scene(folder):
     """The scene as it is written; lbm check says more about what is wrong with one."""
     scene = tomllib.loads((folder / "scene.toml").read_text())
+    if "fluid" not in scene:
+        raise ValueError("a scene without a fluid is not drawn; its plot.py draws its samples")
     if len(scene["box"]["size"]) == 3:
         raise ValueError("a box in three dimensions is not drawn; after a run, draw_slice of pictures cuts it")
     return scene

@@ -14,9 +14,11 @@ import shlex
 import shutil
 import subprocess
 import sys
+import time
 import tomllib
 
 import output_folder
+import solid_alone
 from mpi_job import STOPPED, MpiJob, environment
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -137,6 +139,8 @@ def arguments(words):
         fail(f"--threads {args.threads}: a rank takes at most {MOST_THREADS}; take more --fluid-ranks")
     if args.force and args.restart:
         fail("--force replaces an earlier run and --restart goes on from it; give one of them")
+    if solid_alone.is_alone(CASES / args.scene / "scene.toml"):
+        check_alone(args)
     known = options(args.scene)
     args.own = []
     while rest:
@@ -148,6 +152,15 @@ def arguments(words):
             fail(f"{key} of {args.scene} is one of: {', '.join(known[key[2:]])}, all")
         args.own.append((key[2:], value))
     return args
+
+
+def check_alone(args):
+    """LIGGGHTS alone takes no option of the fluid or of the exchange."""
+    given = {"--fluid-ranks": args.fluid_ranks > 1, "--threads": args.threads > 1, "--record": args.record,
+             "--restart": args.restart, "--engine": args.engine != "liggghts"}
+    for option, wrong in given.items():
+        if wrong:
+            fail(f"{args.scene} has no fluid, LIGGGHTS runs alone: leave {option} out")
 
 
 def label(args):
@@ -169,8 +182,12 @@ def scene_files(args):
     return [str(f) for f in files]
 
 
+def programs():
+    return ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
+
+
 def command(args, out):
-    bin_dir = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
+    bin_dir = programs()
     progress = "line" if sys.stdout.isatty() else "tenths"
     fluid = [str(bin_dir / "lbm"), *scene_files(args)]
     fluid += ["--out", str(out), "--threads", str(args.threads), "--progress", progress]
@@ -216,10 +233,36 @@ def take_folder(args, out, look=False):
     return hold
 
 
+def run_alone(args, out):
+    """LIGGGHTS alone in a folder of ours. Returns its exit code."""
+    try:
+        found = solid_alone.variables(solid_alone.read(scene_files(args)), args.until)
+    except solid_alone.Mistake as mistake:
+        fail(f"{args.scene}: {mistake}")
+    if args.force:
+        output_folder.remove_run(out)
+    script, begin = CASES / args.scene / "in.liggghts", time.monotonic()
+    code = start(solid_alone.command(programs() / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks)
+    if code == 0:
+        solid_alone.write_summary(out, args.scene, args.set, label(args), found, time.monotonic() - begin)
+    elif said := solid_alone.error_in(out / "liggghts.log"):
+        print(f"run | error | liggghts: {said}", file=sys.stderr)
+    return code
+
+
 def run_job(args, out):
     """The job in a folder of ours. Returns its exit code."""
-    line = command(args, out)
-    env = environment(args.fluid_ranks * args.threads + args.solid_ranks)
+    if solid_alone.is_alone(CASES / args.scene / "scene.toml"):
+        return run_alone(args, out)
+    code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks)
+    if code == 0:
+        add_solid_waiting(out)
+    return code
+
+
+def start(line, processes):
+    """Runs an mpirun line to its end. Returns its exit code."""
+    env = environment(processes)
     added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)
     print(f"run | {added + ' ' if added else ''}{shlex.join(line)}", flush=True)
     job = MpiJob(line, env)
@@ -227,8 +270,6 @@ def run_job(args, out):
     if job.stopped:
         print("run | stopped: the job was told to end", file=sys.stderr)
         return STOPPED
-    if code == 0:
-        add_solid_waiting(out)
     return code if code in (0, 1, 2, 3) else FAULT
 
 

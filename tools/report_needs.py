@@ -9,6 +9,7 @@ from launch import CASES, scenes
 from pictures import Run
 from report_cases import BEGINNINGS
 from report_runs import BIN, OUT, is_coupled, merged, progress, run_scene
+from solid_alone import is_alone
 
 ROUNDS = 2  # of each scene as it is and with everything on, in turn; the faster counts
 FLUID = ("placing", "sweep", "loads", "exchange", "waiting", "output")
@@ -41,8 +42,8 @@ def step_of(summary):
 
 
 def needs(again):
-    """A row a scene."""
-    return [row_of(scene, again) for scene in scenes()]
+    """A row a scene with a fluid."""
+    return [row_of(scene, again) for scene in scenes() if not is_alone(CASES / scene / "scene.toml")]
 
 
 def row_of(scene, again):
