@@ -10,7 +10,7 @@ from pictures.pores import cavity, pressure_at
 
 INLET = (0.0475, 0.0525)  # m: heights of the slot in the left wall
 REACH = 0.007  # m: 1.5 diameters; a crack begins with a break as near as that to the inlet or the notch
-SNAPSHOTS = (0.001, 0.003, 0.005, 0.008)  # s
+SNAPSHOTS = (0.003, 0.005, 0.008)  # s
 
 
 class Fracture:
@@ -24,8 +24,7 @@ class Fracture:
         # direction of the crack from the x axis, across the bond [degrees, -90 … 90]
         self.angle = (np.degrees(np.arctan2(normal[:, 1], normal[:, 0])) + 180) % 180 - 90
         self.graph, self.radii = graph_of(run, self.frames)
-        # a notch of the scene's is not in summary.json; unbonded neighbours across the middle show it
-        self.notch = self.notch_length()
+        self.notch = self.notch_length()  # summary.json does not know it
         self.crack = self.crack_until(np.inf)
 
     def notch_length(self):
@@ -92,6 +91,16 @@ def graph_of(run, frames):
     return BondGraph(dict(zip(ids, centres)), nearest.reshape(-1, 2)), radii
 
 
+def pressures(fracture):
+    """Mean pressures at the end in the notch, and in the ground more than 20 mm above and below it, 10 … 50 mm deep [Pa]."""
+    run = fracture.run
+    pressure, cell, middle = run.frame(fracture.frames[-1][1])["pressure"], run.parameters["cell"], np.mean(INLET)
+    x, y = (cell * (np.arange(n) + 0.5) for n in pressure.shape[::-1])
+    notch = np.ix_(np.abs(y - middle) < 0.002, (x > 0.001) & (x < max(0.005, fracture.notch)))
+    ground = np.ix_(np.abs(y - middle) > 0.02, (x > 0.01) & (x < 0.05))
+    return np.nanmean(pressure[notch]), np.nanmean(pressure[ground])
+
+
 def judge(fracture, history):
     """What the paper's picture says: horizontal, from the inlet, growing, by tension."""
     length, height = fracture.size(fracture.crack)
@@ -118,6 +127,8 @@ def quantities(fracture, history):
             quantity("first break", first, "s"), quantity("length of the crack, with the notch", length, "m"),
             quantity("height of the crack", height, "m"), quantity("mean aperture", history["aperture"][-1], "m"),
             quantity("pressure in the crack", history["pressure_in_the_crack"][-1], "Pa"),
+            quantity("pressure in the notch", pressures(fracture)[0], "Pa"),
+            quantity("pressure in the ground", pressures(fracture)[1], "Pa"),
             quantity("wide cavity at the inlet", history["cavity"][-1], "m²"),
             quantity("Ma = u/c_s", fracture.run.summary["ma_max"], "1")]
 
@@ -127,7 +138,7 @@ def draw(axes, fracture, time, name):
     image = draw_speed(axes, run, name, 10.0, length_unit=1e-3)
     draw_bonds(axes, frame, length_unit=1e-3)
     crack = fracture.crack_until(time)
-    axes.plot(*(1e3 * fracture.place[crack].T), "o", markersize=3.5, markerfacecolor="none", color="cyan")
+    axes.plot(*(1e3 * fracture.place[crack].T), "o", markersize=5, markerfacecolor="none", color="gold")
     axes.set_title(f"t = {time * 1e3:.1f} ms")
     axes.set_xlabel("x [mm]")
     return image
@@ -144,15 +155,18 @@ def draw_pressure(axes, fracture, name):
 
 
 def snapshots(fractures):
-    figure, axes = plt.subplots(len(fractures), 5, figsize=(13.5, 2.9 * len(fractures)), squeeze=False, sharey=True)
+    columns = len(SNAPSHOTS) + 1
+    figure, axes = plt.subplots(len(fractures), columns, figsize=(2.9 * columns, 2.8 * len(fractures)), squeeze=False,
+                                sharex=True, sharey=True, layout="constrained", dpi=90)
     for row, (label, f) in zip(axes, fractures.items()):
         for ax, wanted in zip(row, SNAPSHOTS):
             speed = draw(ax, f, *min(f.frames, key=lambda frame: abs(frame[0] - wanted)))
-        pressure = draw_pressure(row[4], f, f.frames[-1][1])
-        row[4].set_title(f"pressure, {1e3 * f.frames[-1][0]:.0f} ms")
+        time, name = f.frames[-1]
+        pressure = draw_pressure(row[-1], f, name)
+        row[-1].set_title(f"t = {1e3 * time:.1f} ms")
         row[0].set_ylabel(f"{label}\ny [mm]")
-    figure.colorbar(speed, ax=axes[:, :4], label="speed of the water [m/s]", fraction=0.02, pad=0.02)
-    figure.colorbar(pressure, ax=axes[:, 4], label="pressure [kPa]", fraction=0.08, pad=0.04)
+    figure.colorbar(speed, ax=axes[:, 0], label="speed of the water [m/s]", location="left", fraction=0.05)
+    figure.colorbar(pressure, ax=axes[:, -1], label="pressure [kPa]", fraction=0.05)
     next(iter(fractures.values())).run.save(figure, "field.png")
 
 
@@ -167,24 +181,26 @@ def rose(axes, fracture):
         below = below + count
     axes.set_thetamin(-90)
     axes.set_thetamax(90)
-    axes.legend(fontsize=7, loc="lower left")
+    axes.legend(fontsize=7, loc="upper right", bbox_to_anchor=(0.45, 0.95))
     axes.set_title("directions of the breaks", fontsize=9)
 
 
 def draw_history(fractures, histories, run):
     figure = plt.figure(figsize=(13.5, 3.0))
     left, middle, right = (figure.add_subplot(1, 4, k) for k in (1, 2, 3))
-    for label, f in fractures.items():
+    colors = plt.get_cmap("tab20").colors
+    for color, (label, f) in zip(colors, fractures.items()):
         h = histories[label]
-        left.plot(1e3 * h["time"], 1e3 * h["length"], label=label)
-        middle.step(1e3 * f.time, np.arange(1, len(f.time) + 1))
-        right.plot(1e3 * h["time"], 1e6 * h["cavity"])
-    left.set_ylabel("length of the crack, with the notch [mm]")
+        left.plot(1e3 * h["time"], 1e3 * h["length"], color=color, label=label)
+        middle.step(1e3 * f.time, np.arange(1, len(f.time) + 1), color=color)
+        right.plot(1e3 * h["time"], 1e6 * h["cavity"], color=color)
+    left.set_ylabel("crack with notch [mm]")
     middle.set_ylabel("bonds broken")
     right.set_ylabel("cavity at the inlet [mm²]")
     for ax in (left, middle, right):
         ax.set_xlabel("time [ms]")
-    left.legend(fontsize=6)
+        ax.set_xlim(0, 8)
+    left.legend(fontsize=5.5, loc="upper left")
     rose(figure.add_subplot(1, 4, 4, projection="polar"), next(iter(fractures.values())))
     figure.tight_layout()
     run.save(figure, "history.png")
@@ -204,7 +220,7 @@ def note(label, fracture, history):
 def main():
     run = Run(sys.argv[1])
     runs = {run.summary["variant"] or "default": run}
-    runs.update({name.removeprefix("variant-").replace("strength", ""): r for name, r in studies(run).items()})
+    runs.update({name.removeprefix("variant-"): r for name, r in studies(run).items()})
     fractures = {label: Fracture(r) for label, r in runs.items()}
     histories = {label: f.history() for label, f in fractures.items()}
     first = next(iter(fractures))

@@ -72,7 +72,8 @@ struct BondBook {
   std::optional<BondRequest> request;
   double spread = 0.0;  ///< of the strengths
   unsigned long seed = 0;
-  double largest_gap = 0.0;  ///< of any bond made, for the guard [m]
+  double largest_gap = 0.0;   ///< without force, of any bond made, for the guard [m]
+  double reserved_gap = 0.0;  ///< for which pairs keep their history in this run [m]
 
   long created = 0, broken_tension = 0, broken_shear = 0;  ///< since the beginning
   long intact = 0;                                         ///< at the last force computation

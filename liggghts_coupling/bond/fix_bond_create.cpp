@@ -141,6 +141,23 @@ void FixBondCreate::setup(int) {
       if (out) std::fputs(text.c_str(), out);
   }
   if (all > 0) warn_of_long_step();
+  check_reach();
+}
+
+/// A bond that is made under pressure has no force at a gap only: it breaks further apart than one
+/// that is made without, and the pairs of this run keep their history up to what was known before.
+void FixBondCreate::check_reach() {
+  double gap = 0.0;
+  MPI_Allreduce(&BondBook::instance().largest_gap, &gap, 1, MPI_DOUBLE, MPI_MAX, world);
+  BondBook::instance().largest_gap = gap;
+  const double reserved = BondBook::instance().reserved_gap;
+  if (gap <= reserved || update->firststep == update->laststep) return;
+  error->fix_error(FLERR, this,
+                   fmt::format("particles press on each other: a bond made there is without force "
+                               "at a gap of {:.3g} m, and would be lost beyond {:.3g} m; write "
+                               "'run 0' after this fix and before the next run",
+                               gap, reserved)
+                       .c_str());
 }
 
 /// Bonds that are too stiff for the step break by themselves: paper A Eq 8, without a safety

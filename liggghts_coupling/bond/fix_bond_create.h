@@ -35,6 +35,7 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
   std::set<std::pair<long, long>> read_list(const char* path);
   Notch read_notch(char** ends);
   void warn_of_long_step() const;
+  void check_reach();
   bool done_ = false;  ///< bonds were made, in this run or before the restart
   long wanted_ = -1;   ///< pairs of the list
 };

@@ -162,7 +162,7 @@ class BondModel : protected Pointers {
   /// Bonds may stretch across a gap: the range in which a pair keeps its history must cover it,
   /// or LIGGGHTS would drop the bond without a word.
   void reserve_range(PropertyRegistry& registry) {
-    const BondBook& book = BondBook::instance();
+    BondBook& book = BondBook::instance();
     const double gap = std::max(book.request ? book.request->gap : 0.0, book.largest_gap);
     double stretch = 0.0;
     int worst[2] = {1, 1};
@@ -185,6 +185,7 @@ class BondModel : protected Pointers {
           "diameter, {:.4g} m. Raise bondNormalStiffness or lower bondTensileStrength",
           worst[0], worst[1], stretch, gap, (kLargestFactor - 1.0) / 1.05 * smallest, smallest));
     neighbor->register_contact_dist_factor(std::max(factor, 1.01));
+    book.reserved_gap = (std::max(factor, 1.01) - 1.0) * smallest - stretch;
     const double meet = 2.0 * registry.max_radius() * factor + neighbor->skin;
     for (int k = 0; k < domain->dimension; ++k)
       if (domain->periodicity[k] && domain->prd[k] < 2.0 * meet)
@@ -279,7 +280,7 @@ class BondModel : protected Pointers {
     if (!memory.bonded && wanted(d, overlap)) {
       dem::make_bond(memory, contact, bond, overlap);
       BondBook& book = BondBook::instance();
-      book.largest_gap = std::max(book.largest_gap, -overlap);
+      book.largest_gap = std::max({book.largest_gap, -overlap, -memory.rest_overlap});
       if (counted) ++book.created;
     }
     const dem::PairMotion m = motion(d, arms);

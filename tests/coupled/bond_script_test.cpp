@@ -83,6 +83,23 @@ INSTANTIATE_TEST_SUITE_P(
                 "cannot be written"}),
     [](const auto& info) { return info.param.name; });
 
+/// K δ = 200 N press when the bond of K/5 is made: it is without force at a gap of 4 δ = 8 mm, and
+/// breaks by its 20 N 1 mm further on. Pulled at 1 m/s it has 11 mm behind it then.
+TEST(BondCreate, UnderPressureBreaksWhereItsLawSays) {
+  Script script;
+  const std::string pressed =
+      replaced(pulled_pair({.stiffness = 2e4}, "1 0 0"), disc(0.55, 0.5), disc(0.548, 0.5));
+  const auto refused = script.run(pressed);
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_NE(refused.output.find("write 'run 0' after this fix"), std::string::npos)
+      << refused.output;
+  expect_ok(script.run(replaced(pressed, "run 2500\n", "run 0\nrun 2500\n")));
+  const auto breaks = rows(script.file("breaks.csv"));
+  ASSERT_EQ(breaks.size(), 1U);
+  EXPECT_EQ(breaks[0][4], "tension");
+  EXPECT_NEAR(std::stod(breaks[0][1]), 0.011, 2e-5);  // two steps
+}
+
 TEST(BondCreate, WarnsWhereThereAreNoneOrTheStepIsTooLong) {
   Script script;
   const std::string none = "has made no bonds", step = "which will break by itself";
