@@ -19,12 +19,14 @@
 #include "protocol/numbers.h"
 #include "protocol/program.h"
 #include "protocol/trace.h"
+#include "protocol/watch.h"
 
 namespace {
 
 using namespace lbm;
 
 constexpr int kMostThreads = 1024;
+constexpr double kAloneSeconds = 300.0;  // longest wait of one rank for another, without a solid
 
 struct Options {
   std::vector<std::string> scene{"scene.toml"};
@@ -155,6 +157,9 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   if (world.coupled()) channel = protocol::make_mpi_channel(world, protocol::Role::Fluid);
   if (o.threads == 0) check_environment();
   const Scene scene = read_scene(o.scene);
+  protocol::limit_waits(scene.coupling
+                            ? scene.coupling->timeout
+                            : protocol::seconds_from_environment("BPLBM_TIMEOUT", kAloneSeconds));
   check_until(scene, o.run);
   const Plan plan = make_plan(scene, step_to_keep(scene, o.run));
   const Decomposition ranks = divide(o, scene, plan, world.local);
@@ -216,8 +221,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     code = protocol::leave_after(error, "lbm", channel.get());
   }
-  channel.reset();
-  protocol::disconnect(world);
-  MPI_Finalize();
-  return code;
+  return protocol::finish(code, "lbm", channel, world.local);
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "protocol/codec.h"
 #include "protocol/errors.h"
@@ -15,6 +17,12 @@ struct Wait {
   std::string what;  ///< e.g. "states of interval 12"
 };
 
+/// What was heard while a farewell was waited for.
+struct Ending {
+  std::vector<int> missing;    ///< remote ranks that have not said it
+  std::optional<Fault> fault;  ///< a remote rank has failed instead
+};
+
 /// Frames between one rank of this side and the ranks of the other side.
 ///
 /// Contract, the same for every transport:
@@ -22,7 +30,8 @@ struct Wait {
 /// - when `send` returns the frame belongs to the transport: nothing need be kept, but it may not
 ///   have arrived;
 /// - `receive` returns the next frame of that remote rank, of whatever kind;
-/// - a fault overtakes everything: any `send` or `receive` in progress or later throws PeerFault;
+/// - a fault overtakes everything: any `send` or `receive` in progress throws PeerFault;
+/// - a rank that has said farewell sends nothing more: `receive` from it throws PeerLeft;
 /// - no call waits longer than its limit: then it throws Timeout.
 class Channel {
  public:
@@ -35,14 +44,15 @@ class Channel {
 
   /// @throws PeerFault, Timeout
   virtual void send(int remote, Bytes frame, const Wait& wait) = 0;
-  /// @throws PeerFault, Timeout
+  /// @throws PeerFault, PeerLeft, Timeout
   virtual Bytes receive(int remote, const Wait& wait) = 0;
 
   /// Tells every remote rank that this side fails. Never throws, never waits for long.
   virtual void raise(const Fault& fault) noexcept = 0;
-  /// After `raise`: waits until every remote rank said farewell, at most `seconds`.
-  virtual void await_farewell(double seconds) noexcept = 0;
-  /// After PeerFault: "I have cleaned up".
+  /// Waits until every remote rank said farewell, at most `seconds`. After `raise` a fault of a
+  /// remote rank counts as its farewell; else it ends the wait.
+  virtual Ending await_farewell(double seconds) noexcept = 0;
+  /// "I send and need nothing more": at the end in good order, and after PeerFault.
   virtual void say_farewell() noexcept = 0;
 };
 

@@ -151,7 +151,7 @@ void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Hello
   io(m.version, m.role, m.program, m.program_version, m.dimension, m.box_lo, m.box_hi, m.periodic,
      m.depth, m.units, m.gravity, m.buoyancy, m.step, m.fluid_steps, m.solid_steps,
      m.first_interval, m.schedule, m.features, m.particles, m.radius, m.density, m.subdomain_lo,
-     m.subdomain_hi, m.reach, m.variables);
+     m.subdomain_hi, m.reach, m.sides, m.bodies, m.variables);
 }
 template <class Io, class M>
 void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Answer> {
@@ -159,7 +159,7 @@ void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, Answe
 }
 template <class Io, class M>
 void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, StateBatch> {
-  io(m.head, m.states, m.shapes, m.bonds);
+  io(m.head, m.setting, m.states, m.shapes, m.bonds);
 }
 template <class Io, class M>
 void fields(Io&& io, M& m) requires std::is_same_v<std::remove_const_t<M>, LoadBatch> {

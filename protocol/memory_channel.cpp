@@ -23,7 +23,7 @@ namespace {
 struct Inbox {
   std::vector<std::deque<Bytes>> from;
   std::optional<Fault> fault;
-  int farewells = 0;
+  std::vector<bool> left;  // [sender] whether it said farewell
 };
 
 struct Exchange {
@@ -51,10 +51,12 @@ class MemoryChannel final : public Channel {
   Bytes receive(int remote, const Wait& wait) override {
     std::unique_lock lock(exchange_->mutex);
     auto& queue = mine().from[remote];
-    const bool came =
-        exchange_->changed.wait_for(lock, std::chrono::duration<double>(wait.seconds),
-                                    [&] { return mine().fault.has_value() || !queue.empty(); });
+    const bool came = exchange_->changed.wait_for(
+        lock, std::chrono::duration<double>(wait.seconds),
+        [&] { return mine().fault.has_value() || !queue.empty() || mine().left[remote]; });
     throw_fault();
+    if (came && queue.empty())
+      throw PeerLeft(fmt::format("{} rank {} left without {}", remote_name(), remote, wait.what));
     if (!came) throw Timeout(timeout_text(*this, remote, wait));
     Bytes frame = std::move(queue.front());
     queue.pop_front();
@@ -66,15 +68,20 @@ class MemoryChannel final : public Channel {
     for (auto& inbox : theirs()) inbox.fault = fault;
     exchange_->changed.notify_all();
   }
-  void await_farewell(double seconds) noexcept override {
+  Ending await_farewell(double seconds) noexcept override {
     std::unique_lock lock(exchange_->mutex);
-    exchange_->changed.wait_for(lock, std::chrono::duration<double>(seconds), [this] {
-      return mine().fault.has_value() || mine().farewells >= remote_size();
+    Ending ending;
+    exchange_->changed.wait_for(lock, std::chrono::duration<double>(seconds), [&] {
+      ending = {{}, mine().fault};
+      for (int r = 0; r < remote_size(); ++r)
+        if (!mine().left[r]) ending.missing.push_back(r);
+      return ending.fault || ending.missing.empty();
     });
+    return ending;
   }
   void say_farewell() noexcept override {
     const std::scoped_lock lock(exchange_->mutex);
-    for (auto& inbox : theirs()) ++inbox.farewells;
+    for (auto& inbox : theirs()) inbox.left[rank_] = true;
     exchange_->changed.notify_all();
   }
 
@@ -96,7 +103,10 @@ MemoryLink make_memory_link(int fluid_ranks, int solid_ranks) {
   const int ranks[2] = {fluid_ranks, solid_ranks};
   for (int side = 0; side < 2; ++side) {
     exchange->inbox[side].resize(ranks[side]);
-    for (auto& inbox : exchange->inbox[side]) inbox.from.resize(ranks[1 - side]);
+    for (auto& inbox : exchange->inbox[side]) {
+      inbox.from.resize(ranks[1 - side]);
+      inbox.left.resize(ranks[1 - side]);
+    }
   }
   MemoryLink link;
   for (int r = 0; r < fluid_ranks; ++r)

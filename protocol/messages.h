@@ -11,7 +11,7 @@
 
 namespace protocol {
 
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 
 using Vec3 = std::array<double, 3>;
 
@@ -35,6 +35,10 @@ struct Range {
 struct Variable {
   std::string name, value;
 };
+
+/// What a side of the box is for the one who says so.
+enum class SideWall : std::uint8_t { None = 0, Whole = 1, Partly = 2 };
+using SideWalls = std::array<SideWall, 6>;  ///< x low, x high, y low, y high, z low, z high
 
 /// Everything that both sides must agree on before the first step.
 struct Hello {
@@ -60,6 +64,8 @@ struct Hello {
   std::optional<Range> density;           ///< mass / (volume, in 2D pi r^2 depth) [kg/m^3]
   Vec3 subdomain_lo{}, subdomain_hi{};    ///< of the sending rank [m]; routes particles
   double reach = 0.0;               ///< fluid: how far beyond a particle's surface it acts [m]
+  std::optional<SideWalls> sides;   ///< absent: this side does not say
+  std::vector<std::string> bodies;  ///< walls that are no side of the box, a name each
   std::vector<Variable> variables;  ///< fluid only: offered to the solid's script
 };
 
@@ -90,6 +96,14 @@ struct State {
   Vec3 x{}, v{}, omega{};  ///< [m], [m/s], [rad/s]
 };
 
+/// What the solid computes with at the moment. It must remain what was agreed.
+struct Setting {
+  double step = 0.0;        ///< its own time step [s]
+  Vec3 box_lo{}, box_hi{};  ///< [m]
+};
+
+inline constexpr std::int64_t kItself = -1;  ///< a sphere that is its own carrier
+
 /// What rarely changes: sent with a particle's first state and whenever it differs.
 struct Shape {
   std::int64_t id = 0;
@@ -97,6 +111,15 @@ struct Shape {
   double mass = 0.0;     ///< [kg], in 2D of the agreed depth
   double inertia = 0.0;  ///< about the centre [kg m^2]
   std::int64_t type = 1;
+  std::int64_t epoch =
+      0;  ///< another one: the id has passed to another particle, which starts anew
+  std::int64_t carrier = kItself;  ///< id of the body that the sphere belongs to
+  double volume = 0.0;  ///< that it displaces [m^3], in 2D of the agreed depth; 0: that of its ball
+};
+
+struct Particle {
+  State state;
+  Shape shape;
 };
 
 /// Mean hydrodynamic load on one particle over an interval, about its centre.
@@ -119,6 +142,7 @@ struct BondReport {
 
 struct StateBatch {
   StepHeader head;
+  Setting setting;
   std::vector<State> states;
   std::vector<Shape> shapes;
   std::optional<BondReport> bonds;  ///< to fluid rank 0 only; not kept in traces
@@ -143,7 +167,7 @@ struct Fault {
 /// "I have read your fault and cleaned up; you need not wait for me."
 struct Farewell {};
 
-static_assert(sizeof(State) == 80 && sizeof(Shape) == 40 && sizeof(Load) == 56 &&
+static_assert(sizeof(State) == 80 && sizeof(Shape) == 64 && sizeof(Load) == 56 &&
                   sizeof(Bond) == 24,
               "records travel as raw memory: no padding");
 static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Shape> &&

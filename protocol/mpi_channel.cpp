@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "protocol/numbers.h"
 #include "protocol/program.h"
+#include "protocol/watch.h"
 
 namespace protocol {
 namespace {
@@ -19,18 +21,25 @@ constexpr int kFrameTag = 7001;
 constexpr int kUrgentTag = 7002;
 constexpr int kRoleTag = 7003;
 constexpr int kLeaderTag = 7004;
+constexpr auto kOnItsWay = std::chrono::seconds(1);
 
 using Clock = std::chrono::steady_clock;
 
 /// Polls until `ready` or until the time is over. A short busy wait keeps the latency of a ready
 /// partner; afterwards the core is offered to others at every turn, because the partner may need
-/// it.
+/// it. (MPI may offer it at every turn as well: a few of them can take as long as a time-out.)
 template <class Ready>
 bool poll(double seconds, Ready&& ready) {
-  constexpr int busy_turns = 2000;
-  for (int turn = 0; turn < busy_turns; ++turn)
+  constexpr int busy_turns = 2000, turns_a_look = 50;
+  const Waiting here("an exchange");
+  std::chrono::time_point<Clock, std::chrono::duration<double>> end;  // most waits end before it
+  for (int turn = 1; turn <= busy_turns; ++turn) {
     if (ready()) return true;
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    if (turn % turns_a_look != 0) continue;
+    const auto now = Clock::now();
+    if (turn == turns_a_look) end = now + std::chrono::duration<double>(seconds);
+    if (now >= end) return ready();
+  }
   while (Clock::now() < end) {
     if (ready()) return true;
     sched_yield();
@@ -44,6 +53,8 @@ class MpiChannel final : public Channel {
     MPI_Comm_rank(world.local, &rank_);
     MPI_Comm_remote_size(remote_, &remote_size_);
     outgoing_.resize(remote_size_);
+    left_.resize(remote_size_);
+    failed_.resize(remote_size_);
   }
 
   int local_rank() const override { return rank_; }
@@ -61,7 +72,7 @@ class MpiChannel final : public Channel {
       if (!done) throw_if_stopped();
       return done != 0;
     });
-    if (!sent) throw Timeout(timeout_text(*this, remote, wait));
+    if (!sent) give_up(remote, wait);
   }
 
   Bytes receive(int remote, const Wait& wait) override {
@@ -70,13 +81,17 @@ class MpiChannel final : public Channel {
     const bool came = poll(wait.seconds, [&] {
       MPI_Iprobe(remote, kFrameTag, remote_, &here, &status);
       if (!here) throw_if_stopped();
+      if (!here) throw_if_left(remote, wait);
       return here != 0;
     });
-    if (!came) throw Timeout(timeout_text(*this, remote, wait));
+    if (!came) give_up(remote, wait);
     return take(status);
   }
 
-  void raise(const Fault& fault) noexcept override { post_urgent(encode(fault)); }
+  void raise(const Fault& fault) noexcept override {
+    raised_ = true;
+    post_urgent(encode(fault));
+  }
   void say_farewell() noexcept override {
     post_urgent(encode(Farewell{}));
     poll(1.0, [this] {
@@ -85,18 +100,16 @@ class MpiChannel final : public Channel {
       return done != 0;
     });
   }
-  void await_farewell(double seconds) noexcept override {
-    int farewells = 0;  // a fault raised by the other side at the same time counts as one
+  Ending await_farewell(double seconds) noexcept override {
+    Ending ending;
     poll(seconds, [&] {
-      MPI_Status status;
-      int here = 0;
-      MPI_Iprobe(MPI_ANY_SOURCE, kUrgentTag, remote_, &here, &status);
-      if (here) {
-        take(status);
-        ++farewells;
-      }
-      return farewells >= remote_size_;
+      if (const Fault* fault = hear_urgent(); fault && !raised_) ending.fault = *fault;
+      ending.missing.clear();
+      for (int r = 0; r < remote_size_; ++r)
+        if (!left_[r] && !(raised_ && failed_[r])) ending.missing.push_back(r);
+      return ending.fault || ending.missing.empty();
     });
+    return ending;
   }
 
  private:
@@ -116,14 +129,37 @@ class MpiChannel final : public Channel {
     return frame;
   }
 
+  /// @throws PeerFault, or ProtocolError where a signal has come
   void throw_if_stopped() {
     throw_if_signalled();
+    if (const Fault* fault = hear_urgent()) throw PeerFault(*fault);
+  }
+
+  /// Takes an urgent frame if there is one. @return the fault that it is, or null
+  const Fault* hear_urgent() {
     MPI_Status status;
     int here = 0;
     MPI_Iprobe(MPI_ANY_SOURCE, kUrgentTag, remote_, &here, &status);
-    if (!here) return;
+    if (!here) return nullptr;
+    const int source = status.MPI_SOURCE;
     const Bytes frame = take(status);
-    if (kind_of(frame) == Kind::Fault) throw PeerFault(decode<Fault>(frame));
+    if (kind_of(frame) == Kind::Fault) {
+      failed_[source] = true;
+      return &fault_.emplace(decode<Fault>(frame));
+    }
+    left_[source] = Clock::now();
+    return nullptr;
+  }
+
+  /// After its farewell a rank sends nothing more; what it sent before may still be on its way.
+  void throw_if_left(int remote, const Wait& wait) const {
+    if (left_[remote] && Clock::now() - *left_[remote] > kOnItsWay)
+      throw PeerLeft(fmt::format("{} rank {} left without {}", remote_name(), remote, wait.what));
+  }
+
+  [[noreturn]] void give_up(int remote, const Wait& wait) const {
+    const std::string silent = silent_ranks(), text = timeout_text(*this, remote, wait);
+    throw Timeout(silent.empty() ? text : fmt::format("{} ({})", silent, text));
   }
 
   /// The frames stay alive with the channel: the program is about to end, nobody waits for them.
@@ -141,6 +177,10 @@ class MpiChannel final : public Channel {
   std::vector<Bytes> outgoing_;
   Bytes urgent_frame_;
   std::vector<MPI_Request> urgent_;
+  std::optional<Fault> fault_;                          ///< the last one of the other side
+  bool raised_ = false;                                 ///< this side has failed
+  std::vector<std::optional<Clock::time_point>> left_;  ///< [remote] when its farewell came
+  std::vector<bool> failed_;                            ///< [remote] whether a fault of it came
 };
 
 double patience(double seconds) {
@@ -182,12 +222,23 @@ std::vector<std::uint32_t> exchange_roles(Role role, double seconds) {
   return roles;
 }
 
+/// Every rank's place in its program, in the order of MPI_COMM_WORLD.
+std::vector<Member> members(const std::vector<std::uint32_t>& roles) {
+  std::vector<Member> all;
+  for (std::size_t r = 0; r < roles.size(); ++r)
+    all.push_back({static_cast<Role>(roles[r]),
+                   static_cast<int>(std::count(roles.begin(), roles.begin() + r, roles[r]))});
+  return all;
+}
+
 }  // namespace
 
 World connect(Role role, double seconds) {
   const auto roles = exchange_roles(role, patience(seconds));
   int me = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &me);
+  start_watch(members(roles), me);
+  limit_waits(patience(seconds), Scope::Job);
   World world;
   MPI_Comm everybody;  // from here on all ranks are known to follow: collectives are safe
   MPI_Comm_dup(MPI_COMM_WORLD, &everybody);
@@ -200,11 +251,12 @@ World connect(Role role, double seconds) {
                          &world.remote);
   }
   MPI_Comm_free(&everybody);
+  limit_waits(std::numeric_limits<double>::infinity());
   return world;
 }
 
 void disconnect(World& world) {
-  if (world.remote != MPI_COMM_NULL) MPI_Comm_disconnect(&world.remote);
+  if (world.remote != MPI_COMM_NULL) MPI_Comm_free(&world.remote);
   if (world.local != MPI_COMM_NULL) MPI_Comm_free(&world.local);
 }
 

@@ -24,7 +24,8 @@ struct World {
 /// @throws Timeout naming the ranks that did not answer
 World connect(Role role, double seconds = -1.0);
 
-/// Collective over both programs, in good order: frees the communicators.
+/// Frees the communicators, where the process goes on to another connection. A program that ends
+/// leaves them to MPI: see `finish` in program.h.
 void disconnect(World& world);
 
 /// A channel over the intercommunicator of `world`.

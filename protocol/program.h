@@ -2,7 +2,10 @@
 /// How a program of a coupled job ends when something went wrong.
 #pragma once
 
+#include <mpi.h>
+
 #include <exception>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +21,16 @@ int exit_code_of(const std::exception& error);
 /// Refusal and PeerLeft return the exit code instead: both programs then leave in good order.
 /// @param channel  null before there is a partner
 int leave_after(const std::exception& error, const std::string& program, Channel* channel);
+
+/// The end of every program of a job, in place of MPI_Finalize: waits for the ranks of its own
+/// program, says farewell, waits for the partner's, and finalises MPI. No wait is longer than the
+/// limit of `limit_waits`, or a minute: see "The end of a job" in README.md. A partner that fails
+/// meanwhile, or stands still, ends the job.
+/// @param channel  null where there is no partner; null afterwards
+/// @param local    the ranks of this program; null where there was no `connect`
+/// @return the exit code
+int finish(int exit_code, const std::string& program, std::unique_ptr<Channel>& channel,
+           MPI_Comm local);
 
 /// Last line that begins with ERROR, as LAMMPS and LIGGGHTS write it, of some files; empty where
 /// there is none.

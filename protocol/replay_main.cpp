@@ -10,6 +10,7 @@
 #include "protocol/program.h"
 #include "protocol/session.h"
 #include "protocol/trace_compare.h"
+#include "protocol/watch.h"
 
 namespace {
 
@@ -31,6 +32,7 @@ TraceComparison play_solid(Channel& channel, const Trace& trace, double timeout)
   for (const IntervalRecord& r : record) {
     StepHeader head = r.head;
     if (stop) head.flags |= kLast;
+    session.set(r.setting);
     const auto reply =
         speaks ? session.exchange(head, r.states, r.shapes) : session.exchange(head, {}, {});
     if (head.flags & kLast) return result;
@@ -70,9 +72,10 @@ TraceComparison play_fluid(Channel& channel, const Trace& trace, double timeout)
   throw ProtocolError("the recording ends here, but the solid goes on");
 }
 
-int run(const Options& options, std::unique_ptr<Channel>& channel) {
+int run(const Options& options, std::unique_ptr<Channel>& channel, World& world) {
   const Role role = options.as == "solid" ? Role::Solid : Role::Fluid;
-  World world = connect(role);
+  world = connect(role);
+  limit_waits(options.timeout);
   if (!world.coupled())
     throw ProtocolError(
         fmt::format("no partner to replay to; start: mpirun -np 1 {}",
@@ -89,8 +92,6 @@ int run(const Options& options, std::unique_ptr<Channel>& channel) {
                                           : play_fluid(*channel, trace, options.timeout);
   if (channel->local_rank() == 0)
     fmt::print("replay | {} | {}\n", role == Role::Solid ? "loads" : "states", result.text());
-  channel.reset();
-  disconnect(world);
   return result.largest() <= options.tolerance ? kOk : kFault;
 }
 
@@ -111,12 +112,12 @@ int main(int argc, char** argv) {
 
   MPI_Init(&argc, &argv);
   std::unique_ptr<Channel> channel;
+  World world;
   int code = kOk;
   try {
-    code = run(options, channel);
+    code = run(options, channel, world);
   } catch (const std::exception& error) {
     code = leave_after(error, "replay", channel.get());
   }
-  MPI_Finalize();
-  return code;
+  return finish(code, "replay", channel, world.local);
 }

@@ -19,4 +19,12 @@ bool touches(const Hello& fluid, const Vec3& x, double radius) {
   return true;
 }
 
+bool astray(const Hello& fluid, const Vec3& x) {
+  for (unsigned k = 0; k < fluid.dimension; ++k) {
+    const double lo = fluid.box_lo[k], hi = fluid.box_hi[k], length = hi - lo;
+    if (!fluid.periodic[k] && (x[k] < lo - length || x[k] > hi + length)) return true;
+  }
+  return false;
+}
+
 }  // namespace protocol

@@ -11,4 +11,8 @@ namespace protocol {
 /// @param radius  [m]; the fluid's reach is added
 bool touches(const Hello& fluid, const Vec3& x, double radius);
 
+/// Is a place farther outside of the box than that is long, on an axis that is not periodic? A
+/// particle that leaves an open box is dropped long before.
+bool astray(const Hello& fluid, const Vec3& x);
+
 }  // namespace protocol

@@ -7,9 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "protocol/agreement.h"
+#include "protocol/numbers.h"
 #include "protocol/routing.h"
 
 namespace protocol {
@@ -56,6 +59,24 @@ void expect_finite(const Record& record, const Vec3& value, const char* what,
                      kNumerics);
 }
 
+[[noreturn]] void refuse_astray(const State& s, std::int64_t interval) {
+  throw ProtocolError(
+      fmt::format("particle {}: its centre ({:.6g}, {:.6g}, {:.6g}) m lies far outside of the box "
+                  "at interval {}; correct its place, or delete it",
+                  s.id, s.x[0], s.x[1], s.x[2], interval),
+      kBadInput);
+}
+
+/// What a fluid's scene says of the longest wait.
+double timeout_of(const Hello& fluid, double fallback) {
+  for (const Variable& v : fluid.variables)
+    if (v.name == "coupling_timeout") {
+      const auto seconds = to_number<double>(v.value);
+      if (seconds && *seconds > 0.0) return *seconds;
+    }
+  return fallback;
+}
+
 void expect_interval(const StepHeader& head, std::int64_t expected, const Channel& channel,
                      int rank) {
   if (head.interval != expected)
@@ -70,6 +91,7 @@ void expect_interval(const StepHeader& head, std::int64_t expected, const Channe
 FluidSession::FluidSession(Channel& channel, Hello hello, double timeout)
     : channel_(channel),
       mine_(std::move(hello)),
+      check_(mine_),
       timeout_(timeout),
       next_interval_(mine_.first_interval),
       order_(channel.remote_size()) {
@@ -103,6 +125,7 @@ const Arrival& FluidSession::receive() {
     }
     batches.push_back(decode<StateBatch>(frame));
     expect_interval(batches.back().head, next_interval_, channel_, r);
+    check_.setting(batches.back().setting, next_interval_);
   }
   if (batches.empty() && channel_.remote_size() > 0) return arrival_;
   if (static_cast<int>(batches.size()) != channel_.remote_size())
@@ -113,19 +136,18 @@ const Arrival& FluidSession::receive() {
   return arrival_;
 }
 
-void FluidSession::learn_shapes(const StateBatch& batch) {
-  for (const Shape& shape : batch.shapes) {
-    const bool sound = std::isfinite(shape.radius) && shape.radius > 0.0 &&
-                       std::isfinite(shape.mass) && shape.mass > 0.0 &&
-                       std::isfinite(shape.inertia) && shape.inertia > 0.0;
-    if (!sound)
-      throw BadMessage(
-          fmt::format("particle {}: radius {} m, mass {} kg, inertia {} kg m² must be "
-                      "positive (interval {})",
-                      shape.id, shape.radius, shape.mass, shape.inertia, batch.head.interval),
-          kBadInput);
-    shapes_[shape.id] = shape;
-  }
+/// @return ids of the shapes that came, in order
+std::vector<std::int64_t> FluidSession::learn_shapes(const std::vector<StateBatch>& batches) {
+  std::vector<std::int64_t> told;
+  for (const StateBatch& batch : batches)
+    for (const Shape& shape : batch.shapes) {
+      const auto known = shapes_.find(shape.id);
+      check_.shape(shape, known == shapes_.end() ? nullptr : &known->second, next_interval_);
+      told.push_back(shape.id);
+      shapes_[shape.id] = shape;
+    }
+  std::sort(told.begin(), told.end());
+  return told;
 }
 
 /// The usual case, without any table: the same particles on the same ranks in the same order as in
@@ -139,8 +161,11 @@ bool FluidSession::merge_as_before(const std::vector<StateBatch>& batches) {
       return false;
   }
   for (std::size_t r = 0; r < batches.size(); ++r)
-    for (std::size_t i = 0; i < batches[r].states.size(); ++i)
-      arrival_.particles[order_[r][i]].state = batches[r].states[i];
+    for (std::size_t i = 0; i < batches[r].states.size(); ++i) {
+      Particle& particle = arrival_.particles[order_[r][i]];
+      check_.next_state(batches[r].states[i], particle.shape, particle.state, next_interval_);
+      particle.state = batches[r].states[i];
+    }
   return true;
 }
 
@@ -156,20 +181,33 @@ void FluidSession::merge_bonds(const std::vector<StateBatch>& batches) {
   }
 }
 
-void FluidSession::expect_finite_states() const {
-  for (const auto& [s, shape] : arrival_.particles) {
-    expect_finite(s, s.x, "position", next_interval_);
-    expect_finite(s, s.v, "velocity", next_interval_);
-    expect_finite(s, s.omega, "angular velocity", next_interval_);
+/// @param before  particles of the interval before, by id
+/// @param told  those whose shape came with this one
+void FluidSession::check_states(std::span<const Particle> before,
+                                std::span<const std::int64_t> told) {
+  std::vector<char> is_new;
+  lightest_ = std::numeric_limits<double>::infinity();
+  auto old = before.begin();
+  for (const Particle& now : arrival_.particles) {
+    lightest_ = std::min(lightest_, now.shape.mass);
+    while (old != before.end() && old->state.id < now.state.id) ++old;
+    const bool same =
+        old != before.end() && old->state.id == now.state.id && old->shape.epoch == now.shape.epoch;
+    if (same)
+      check_.next_state(now.state, now.shape, old->state, next_interval_);
+    else
+      check_.first_state(now, next_interval_);
+    is_new.push_back(std::binary_search(told.begin(), told.end(), now.state.id));
   }
+  if (!told.empty()) check_.overlaps(arrival_.particles, is_new, next_interval_);
 }
 
 void FluidSession::merge(const std::vector<StateBatch>& batches) {
   arrival_.head = batches.front().head;
   arrival_.goodbye.reset();
   merge_bonds(batches);
-  if (merge_as_before(batches)) return expect_finite_states();
-  for (const auto& batch : batches) learn_shapes(batch);
+  if (merge_as_before(batches)) return;
+  const auto told = learn_shapes(batches);
   struct Origin {
     std::int64_t id;
     std::size_t rank, record;
@@ -183,7 +221,7 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
     }
   std::sort(origins.begin(), origins.end(),
             [](const Origin& a, const Origin& b) { return a.id < b.id; });
-  arrival_.particles.clear();
+  const std::vector<Particle> last = std::exchange(arrival_.particles, {});
   for (std::size_t r = 0; r < batches.size(); ++r) order_[r].resize(batches[r].states.size());
   std::unordered_map<std::int64_t, Shape> present;
   for (const Origin& o : origins) {
@@ -196,16 +234,29 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
     order_[o.rank][o.record] = arrival_.particles.size();
     arrival_.particles.push_back({batches[o.rank].states[o.record], shape->second});
   }
+  if (const auto twice = std::adjacent_find(told.begin(), told.end()); twice != told.end())
+    throw BadMessage(
+        fmt::format("two shapes of particle {} came at interval {}", *twice, next_interval_),
+        kBadInput);
+  for (const std::int64_t id : told)
+    if (!present.contains(id))
+      throw BadMessage(fmt::format("a shape of particle {} came at interval {}, but no state of it",
+                                   id, next_interval_),
+                       kBadInput);
   shapes_ = std::move(present);  // a particle that vanished must introduce itself again
-  expect_finite_states();
+  check_states(last, told);
 }
 
 void FluidSession::answer(std::span<const Load> loads, std::uint32_t flags) {
   const StepHeader head{arrival_.head.interval, arrival_.head.time, flags};
+  double largest = 0.0;
   for (const Load& load : loads) {
     expect_finite(load, load.force, "hydrodynamic force", head.interval);
     expect_finite(load, load.torque, "hydrodynamic torque", head.interval);
+    const auto& [x, y, z] = load.force;
+    largest = std::max(largest, x * x + y * y + z * z);
   }
+  check_.note_loads(std::sqrt(largest) / lightest_);
   for (int r = 0; r < channel_.remote_size(); ++r) {
     LoadBatch batch{head, {}};
     batch.loads.reserve(order_[r].size());
@@ -222,14 +273,17 @@ SolidSession::SolidSession(Channel& channel, double timeout)
       told_(channel.remote_size()),
       sent_(channel.remote_size()) {
   const Stopwatch watch(waited_);
-  for (int r = 0; r < channel_->remote_size(); ++r)
+  for (int r = 0; r < channel_->remote_size(); ++r) {
     fluid_.push_back(decode<Hello>(channel_->receive(r, {timeout_, "its hello"})));
+    timeout_ = timeout_of(fluid_.back(), timeout_);
+  }
 }
 
 void SolidSession::agree(const Hello& hello) {
   const Stopwatch watch(waited_);
   for (int r = 0; r < channel_->remote_size(); ++r)
     channel_->send(r, encode(hello), {timeout_, "it to take our hello"});
+  setting_ = {hello.step, hello.box_lo, hello.box_hi};
   settle(*channel_, fluid_.front(), hello, {timeout_, "its answer to our hello"});
 }
 
@@ -262,28 +316,36 @@ SolidSession::Reply SolidSession::exchange(const StepHeader& head, std::span<con
 void SolidSession::send_states(int rank, const StepHeader& head, std::span<const State> states,
                                std::span<const Shape> shapes,
                                const std::optional<BondReport>& bonds) {
-  StateBatch batch{head, {}, {}, bonds};
+  StateBatch batch{head, setting_, {}, {}, bonds};
   batch.states.reserve(states.size());
-  const std::vector<Shape> told = std::move(told_[rank]);
-  std::unordered_map<std::int64_t, const Shape*> by_id;  // only where the order has changed
-  const auto told_of = [&](std::size_t place, std::int64_t id) -> const Shape* {
-    if (place < told.size() && told[place].id == id) return &told[place];
-    if (by_id.empty())
-      for (const Shape& s : told) by_id.emplace(s.id, &s);
-    const auto found = by_id.find(id);
-    return found == by_id.end() ? nullptr : found->second;
-  };
-  told_[rank].clear();
+  std::vector<Shape>& told = told_[rank];
+  std::unordered_map<std::int64_t, Shape> others;  // told before; only where the order has changed
+  bool in_order = true;
   sent_[rank].clear();
   for (std::size_t i = 0; i < states.size(); ++i) {
-    if (!touches(fluid_[rank], states[i].x, shapes[i].radius)) continue;
-    const Shape* known = told_of(batch.states.size(), states[i].id);
-    if (!known || std::memcmp(known, &shapes[i], sizeof(Shape)) != 0)
+    const State& state = states[i];
+    if (!touches(fluid_[rank], state.x, shapes[i].radius)) {
+      if (astray(fluid_[rank], state.x)) refuse_astray(state, head.interval);
+      continue;
+    }
+    const std::size_t place = batch.states.size();
+    if (in_order && (place >= told.size() || told[place].id != state.id)) {
+      in_order = false;
+      for (std::size_t n = place; n < told.size(); ++n) others.emplace(told[n].id, told[n]);
+      told.resize(place);
+    }
+    if (!in_order) {
+      const auto known = others.find(state.id);
+      told.push_back(known == others.end() ? Shape{} : known->second);
+    }
+    if (std::memcmp(&told[place], &shapes[i], sizeof(Shape)) != 0) {
+      told[place] = shapes[i];
       batch.shapes.push_back(shapes[i]);
-    batch.states.push_back(states[i]);
+    }
+    batch.states.push_back(state);
     sent_[rank].push_back(i);
-    told_[rank].push_back(shapes[i]);
   }
+  told.resize(batch.states.size());
   channel_->send(rank, encode(batch), {timeout_, "it to take our states"});
 }
 

@@ -16,14 +16,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "protocol/arrival_check.h"
 #include "protocol/channel.h"
 
 namespace protocol {
-
-struct Particle {
-  State state;
-  Shape shape;
-};
 
 /// What the solid side sent for one interval, merged over its ranks and ordered by id.
 struct Arrival {
@@ -43,8 +39,8 @@ class FluidSession {
   /// @throws Refusal, PeerFault, Timeout, BadMessage
   const Hello& agree();
 
-  /// Waits for the states of the next interval.
-  /// @throws BadMessage  wrong interval, unknown shape, double id, a value that is not finite
+  /// Waits for the states of the next interval, and holds them against what was agreed.
+  /// @throws BadMessage  wrong interval, unknown shape, double id, what ArrivalCheck refuses
   const Arrival& receive();
 
   /// Answers the last arrival. @param loads  in the order of its particles
@@ -53,14 +49,16 @@ class FluidSession {
   double waited() const { return waited_; }  ///< seconds spent in waits so far
 
  private:
-  void learn_shapes(const StateBatch& batch);
+  std::vector<std::int64_t> learn_shapes(const std::vector<StateBatch>& batches);
   void merge(const std::vector<StateBatch>& batches);
   void merge_bonds(const std::vector<StateBatch>& batches);
   bool merge_as_before(const std::vector<StateBatch>& batches);
-  void expect_finite_states() const;
+  void check_states(std::span<const Particle> before, std::span<const std::int64_t> told);
 
   Channel& channel_;
   Hello mine_, partner_;
+  ArrivalCheck check_;
+  double lightest_ = 1.0;  // mass of the particles [kg]
   double timeout_, waited_ = 0.0;
   std::int64_t next_interval_;
   std::unordered_map<std::int64_t, Shape> shapes_;
@@ -72,12 +70,16 @@ class FluidSession {
 class SolidSession {
  public:
   /// Waits for the hello of every fluid rank. `channel` must outlive the session.
+  /// @param timeout  longest wait [s]; the fluid's `coupling_timeout` where it offers one
   SolidSession(Channel& channel, double timeout);
 
   /// Hello of fluid rank 0; its variables are for the script.
   const Hello& fluid() const { return fluid_.front(); }
 
+  double timeout() const { return timeout_; }
   void set_timeout(double seconds) { timeout_ = seconds; }
+  /// What the solid computes with now, for the next states; until then what it said in its hello.
+  void set(const Setting& now) { setting_ = now; }
   /// Goes on over another channel to the same partner, e.g. a recording one.
   void use(Channel& channel) { channel_ = &channel; }
 
@@ -89,6 +91,7 @@ class SolidSession {
     std::span<const Load> loads;  ///< in the order of the states sent; valid until the next are
   };
   /// Sends this rank's states.
+  /// @throws ProtocolError  a particle is as far outside of the box as that is long
   /// @param states, shapes  one each a particle, same order
   /// @param bonds  what a solid with bonds has to say of them
   void send(const StepHeader& head, std::span<const State> states, std::span<const Shape> shapes,
@@ -115,7 +118,8 @@ class SolidSession {
   std::vector<Hello> fluid_;                    // [fluid rank]
   std::vector<std::vector<Shape>> told_;        // [fluid rank] shapes sent last
   std::vector<std::vector<std::size_t>> sent_;  // [fluid rank] states it got
-  StepHeader head_;                             // of the states sent last
+  Setting setting_;
+  StepHeader head_;  // of the states sent last
   std::vector<Load> loads_;
 };
 

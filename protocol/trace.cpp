@@ -7,7 +7,7 @@
 
 namespace protocol {
 namespace {
-constexpr std::int64_t kTraceVersion = 1;
+constexpr std::int64_t kTraceVersion = 2;
 constexpr double kFlushSeconds = 0.5;
 constexpr std::uint64_t kFlushFrames = 64;
 }  // namespace
@@ -52,6 +52,7 @@ void TraceWriter::record(Direction direction, int remote, const Bytes& frame) {
   if (row.kind == Kind::States) {
     const auto batch = decode<StateBatch>(frame);
     set_header(batch.head);
+    row.setting = batch.setting;
     row.first = states_.size();
     row.count = batch.states.size();
     row.shape_first = shapes_.size();
@@ -129,7 +130,8 @@ Bytes Trace::frame(const FrameRow& row) const {
   if (row.kind == Kind::States) {
     const auto s = states(row);
     const auto h = shapes(row);
-    return encode(StateBatch{header(row), {s.begin(), s.end()}, {h.begin(), h.end()}});
+    return encode(
+        StateBatch{header(row), row.setting, {s.begin(), s.end()}, {h.begin(), h.end()}, {}});
   }
   if (row.kind == Kind::Loads) {
     const auto l = loads(row);
@@ -177,7 +179,9 @@ class RecordingChannel final : public Channel {
     }
     inner_->raise(fault);
   }
-  void await_farewell(double seconds) noexcept override { inner_->await_farewell(seconds); }
+  Ending await_farewell(double seconds) noexcept override {
+    return inner_->await_farewell(seconds);
+  }
   void say_farewell() noexcept override { inner_->say_farewell(); }
 
  private:
@@ -223,7 +227,7 @@ class ReplayChannel final : public Channel {
     return frame;
   }
   void raise(const Fault&) noexcept override {}
-  void await_farewell(double) noexcept override {}
+  Ending await_farewell(double) noexcept override { return {}; }
   void say_farewell() noexcept override {}
 
  private:

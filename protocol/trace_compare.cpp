@@ -60,6 +60,7 @@ std::vector<IntervalRecord> timeline(const Trace& trace) {
       continue;
     }
     record.head = {row.interval, row.time, row.flags};
+    record.setting = row.setting;
     append(record.states, trace.states(row));
     for (const Shape& s : trace.shapes(row)) shapes[s.id] = s;
   }

@@ -15,6 +15,7 @@ namespace protocol {
 /// One interval, merged over the remote ranks and ordered by particle id.
 struct IntervalRecord {
   StepHeader head;
+  Setting setting;
   std::uint32_t load_flags = kContinue;
   std::vector<State> states;
   std::vector<Shape> shapes;  ///< of every state, also where only an earlier frame carried it

@@ -43,7 +43,10 @@ Handle row_type<Shape>() {
                                   {"radius", offsetof(Shape, radius), H5T_NATIVE_DOUBLE},
                                   {"mass", offsetof(Shape, mass), H5T_NATIVE_DOUBLE},
                                   {"inertia", offsetof(Shape, inertia), H5T_NATIVE_DOUBLE},
-                                  {"type", offsetof(Shape, type), H5T_NATIVE_INT64}});
+                                  {"type", offsetof(Shape, type), H5T_NATIVE_INT64},
+                                  {"epoch", offsetof(Shape, epoch), H5T_NATIVE_INT64},
+                                  {"carrier", offsetof(Shape, carrier), H5T_NATIVE_INT64},
+                                  {"volume", offsetof(Shape, volume), H5T_NATIVE_DOUBLE}});
 }
 template <>
 Handle row_type<Load>() {
@@ -54,6 +57,7 @@ Handle row_type<Load>() {
 }
 template <>
 Handle row_type<FrameRow>() {
+  const Handle vec = vector_type();
   return compound(sizeof(FrameRow),
                   {{"interval", offsetof(FrameRow, interval), H5T_NATIVE_INT64},
                    {"time", offsetof(FrameRow, time), H5T_NATIVE_DOUBLE},
@@ -65,7 +69,10 @@ Handle row_type<FrameRow>() {
                    {"first", offsetof(FrameRow, first), H5T_NATIVE_UINT64},
                    {"count", offsetof(FrameRow, count), H5T_NATIVE_UINT64},
                    {"shape_first", offsetof(FrameRow, shape_first), H5T_NATIVE_UINT64},
-                   {"shape_count", offsetof(FrameRow, shape_count), H5T_NATIVE_UINT64}});
+                   {"shape_count", offsetof(FrameRow, shape_count), H5T_NATIVE_UINT64},
+                   {"step", offsetof(FrameRow, setting.step), H5T_NATIVE_DOUBLE},
+                   {"box_lo", offsetof(FrameRow, setting.box_lo), vec},
+                   {"box_hi", offsetof(FrameRow, setting.box_hi), vec}});
 }
 template <>
 Handle row_type<std::byte>() {

@@ -25,6 +25,7 @@ struct FrameRow {
   std::uint32_t flags = 0;
   std::uint64_t first = 0, count = 0;              ///< rows of states or loads, or bytes
   std::uint64_t shape_first = 0, shape_count = 0;  ///< rows of shapes
+  Setting setting;                                 ///< of states
 };
 
 /// HDF5 type of a row. @return an owned compound type

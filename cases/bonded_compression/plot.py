@@ -6,7 +6,7 @@ import sys
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PatchCollection
-from pictures import Run, draw_breaks, quantity, read_breaks, read_table, result, studies
+from bplbm import Run, draw_breaks, quantity, read_breaks, read_table, result, studies
 
 KINDS = ("compression", "tension", "brazilian", "notched20", "notched30", "notched40")
 

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, result
+from bplbm import Run, draw_speed, result
 
 SHEAR = 0.1  # 1/s
 

@@ -4,13 +4,13 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, quantity, read_table, result, studies
+from bplbm import Run, quantity, read_table, result, studies
 
 FLOOR = 0.004         # m, of the scene
 # The bed lifts where its effective stress vanishes. While it rests, the floor's load falls in a straight line with the
 # gradient; that line is followed to zero, since a few discs stay behind on the floor when the bed has lifted.
 LINE = (0.1, 0.5)     # of the submerged weight, part of the line that is used
-# The balance of momentum is exact. What is left is the inertia of the water during the ramp, which the pressures
+# The balance of momentum is exact. What is left is the inertia of the fluid during the ramp, which the pressures
 # hold by some tenths of a per cent.
 TOLERANCE = 0.02
 REST = (0.2, 0.35)    # s: the bed has come to rest in the fluid, and the drive carries a tenth at most
@@ -20,7 +20,7 @@ SEEPAGE = (0.6, 0.95)  # of the critical gradient: where the permeability is mea
 # Until it lifts, the bed rises by what its contacts give way, weight / stiffness for each of some
 # fifteen layers: 0.03 mm. A tenth of a disc is far above that.
 ELASTIC = 0.1         # of a disc's diameter
-# Water and discs, 56 kg over each square metre of floor, take a moment to get into motion: the surplus of 10 %
+# Fluid and discs, 56 kg over each square metre of floor, take a moment to get into motion: the surplus of 10 %
 # that the ramp reaches 0.1 s after the lift-off has moved them by some two such distances.
 BRACKET = (0.95, 1.1)
 

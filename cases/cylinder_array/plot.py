@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, drag_results, draw_errors, draw_speed, read_table, studies
+from bplbm import Run, drag_results, draw_errors, draw_speed, read_table, studies
 
 DRAG = 51.526949  # F/(mu U) at c = 0.2
 SOURCE = "spectral solution of the Stokes flow; Sangani and Acrivos 1982 within 0.03 %"

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, read_table, result
+from bplbm import Run, draw_speed, read_table, result
 
 SOURCE = "Schäfer and Turek 1996; values of featflow's grid study"
 DIAMETER = 0.1

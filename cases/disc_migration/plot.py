@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, animate, draw_speed, quantity, result, studies, write_table
+from bplbm import Run, animate, draw_speed, quantity, result, studies, write_table
 
 HEIGHT = 0.01
 PAPER = {"10 mm": 21 * 3600 + 31 * 60, "40 mm": 95 * 3600 + 26 * 60}  # s of wall time

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_snapshots, result
+from bplbm import Run, draw_snapshots, result
 
 SOURCE = "what every published simulation shows"
 

@@ -11,7 +11,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import read_table, write_table
+from bplbm import read_table, write_table
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STRENGTHS, RATIOS, SEEDS = ("400", "1000", "1500", "3000"), ("0.8", "0.9", "0.95", "1.0"), ("11", "12", "13")

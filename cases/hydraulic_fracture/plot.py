@@ -4,9 +4,9 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, animate, draw_bonds, draw_speed, quantity, read_breaks, result, studies, write_table
-from pictures.cracks import BondGraph, openings
-from pictures.pores import cavity, pressure_at
+from bplbm import Run, animate, draw_bonds, draw_speed, quantity, read_breaks, result, studies, write_table
+from bplbm.cracks import BondGraph, openings
+from bplbm.pores import cavity, pressure_at
 
 INLET = (0.0475, 0.0525)  # m: heights of the slot in the left wall
 REACH = 0.007  # m: 1.5 diameters; a crack begins with a break as near as that to the inlet or the notch

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, result
+from bplbm import Run, result
 
 # Ghia, Ghia and Shin 1982, tables I and II: u on the vertical, v on the horizontal centre line.
 GHIA = {

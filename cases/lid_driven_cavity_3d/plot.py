@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_slice, result
+from bplbm import Run, draw_slice, result
 
 # Albensoeder and Kuhlmann, J. Comput. Phys. 206 (2005) 536, spectral, Re 1000: least u on the vertical, largest
 # and least v on the horizontal centre line. From memory; that all three agree is what vouches for them.

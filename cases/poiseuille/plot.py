@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, result
+from bplbm import Run, result
 
 # Body force: TRT with Λ = 3/16 has the parabola as an exact solution between half-way walls, what
 # remains is round-off; the field file stores single precision, 6e-8 of the largest value.

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_snapshots, quantity, result, studies
+from bplbm import Run, draw_snapshots, quantity, result, studies
 
 FALLING = (8e-3, 15e-3)  # m: heights between which the terminal velocity is taken
 # Another code at D/Δx = 25, as a value to stay near to: the paper gives figures only.

@@ -5,7 +5,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_snapshots, result, studies
+from bplbm import Run, draw_snapshots, result, studies
 
 # Maximum Reynolds number rho_s d U / mu in the literature: 17.27 (Glowinski et al. 2001, h = 1/192)
 # to 17.42 (Wan and Turek 2006); their middle is the reference, 2 % of it the tolerance: half of the

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, result
+from bplbm import Run, result
 
 
 def vorticity(velocity, cell):

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, animate, draw_bonds, draw_speed, quantity, read_table, result, studies, write_table
+from bplbm import Run, animate, draw_bonds, draw_speed, quantity, read_table, result, studies, write_table
 
 DISCS = 273
 PIPES = [(42, 50), (56, 50)]  # lower left corners of the pipe's walls [mm], 2 mm wide

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_slice, quantity, read_table, result, studies
+from bplbm import Run, draw_slice, quantity, read_table, result, studies
 
 SPHERES = 303
 

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, drag_results, draw_errors, draw_slice, read_table, studies
+from bplbm import Run, drag_results, draw_errors, draw_slice, read_table, studies
 
 DRAG = 4.292  # K = F/(6 pi mu a U) at c = 0.125
 SOURCE = "Zick and Homsy 1982"

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, animate, draw_speed, quantity, read_table, result, write_table
+from bplbm import Run, animate, draw_speed, quantity, read_table, result, write_table
 
 STEP = 8.3333e-7  # s, the paper's
 SHOWN = (0, 50_000, 100_000, 200_000, 500_000)  # its steps

@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_speed, read_table, result
+from bplbm import Run, draw_speed, read_table, result
 
 R1, R2, SPIN = 0.0016, 0.0032, 1.0
 CENTRE = np.array([0.00382, 0.00379])

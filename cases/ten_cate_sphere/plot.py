@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from pictures import Run, draw_slice, result, studies
+from bplbm import Run, draw_slice, result, studies
 
 # Largest velocity [m/s] by density of the fluid: E1, E2 and E4 of ten Cate, Nieuwstad, Derksen and Van den
 # Akker, Phys. Fluids 14 (2002) 4012, measured to 1 %.

@@ -64,11 +64,12 @@ struct InitialScene {
 };
 
 struct FluidScene {
-  double density = 1000.0;    ///< [kg/m^3]
-  double viscosity = 1e-6;    ///< kinematic [m^2/s]
-  Vec3 gravity;               ///< [m/s^2]
-  Vec3 body_force;            ///< acceleration that drives the fluid [m/s^2]
-  double velocity_scale = 0;  ///< largest expected speed of fluid or particles [m/s]
+  double density = 1000.0;     ///< [kg/m^3]
+  double viscosity = 1e-6;     ///< kinematic [m^2/s]
+  Vec3 gravity;                ///< [m/s^2]
+  Vec3 body_force;             ///< acceleration that drives the fluid [m/s^2]
+  double body_force_ramp = 0;  ///< time in which it comes up [s]
+  double velocity_scale = 0;   ///< largest expected speed of fluid or particles [m/s]
 };
 
 struct NumericsScene {

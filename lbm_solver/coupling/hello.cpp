@@ -7,6 +7,32 @@
 
 namespace lbm {
 
+namespace {
+
+/// A wall, also one that moves along itself, unless an opening takes the whole side.
+protocol::SideWall wall_at(const Scene& s, SideName side) {
+  if (s.box.sides[axis_of(side)] == SideKind::Periodic) return protocol::SideWall::None;
+  auto wall = protocol::SideWall::Whole;
+  for (const BoundaryScene& b : s.boundaries) {
+    const bool moves_along =
+        b.kind == BoundaryScene::Kind::Velocity && b.velocity[axis_of(side)] == 0.0;
+    if (b.side != side || moves_along) continue;
+    if (!b.from[0] && !b.from[1] && !b.to[0] && !b.to[1]) return protocol::SideWall::None;
+    wall = protocol::SideWall::Partly;
+  }
+  return wall;
+}
+
+void add_walls(const Scene& s, protocol::Hello& h) {
+  h.sides.emplace();
+  for (int side = 0; side < 2 * s.box.dimension; ++side)
+    (*h.sides)[side] = wall_at(s, static_cast<SideName>(side));
+  const std::size_t n = s.obstacles.size();
+  if (n > 0) h.bodies.push_back(n == 1 ? "the scene's obstacle" : fmt::format("{} obstacles", n));
+}
+
+}  // namespace
+
 protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start,
                            const std::optional<Block>& cells) {
   const Vec3 top = s.box.origin + s.box.size;
@@ -40,6 +66,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
     if (cells->begin[k] + cells->size[k] < plan.domain.cells()[k])
       h.subdomain_hi[k] = s.box.origin[k] + plan.units.dx * (cells->begin[k] + cells->size[k]);
   }
+  add_walls(s, h);
   h.reach = std::max(2.0, s.coupling->lubrication_range) * plan.units.dx;
 
   const auto number = [&h](const std::string& name, double value) {
@@ -69,6 +96,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   whole("restart", start.interval > 0 ? 1 : 0);
   h.variables.push_back({"checkpoint", start.checkpoint});
   h.variables.push_back({"restart_file", start.solid_part});
+  number("coupling_timeout", s.coupling->timeout);
   number("diameter_min", p.diameter.lo);
   number("diameter_max", p.diameter.hi);
   number("density_min", p.density.lo);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <unordered_map>
 
@@ -133,31 +134,35 @@ void Observers::guard(std::int64_t state, Fluid& fluid, const Particles* particl
   const Vec3 x = plan_.units.origin + plan_.units.dx * cell;
   const std::string place = flat ? fmt::format("({:.6g}, {:.6g}) m", x.x(), x.y())
                                  : fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x.x(), x.y(), x.z());
-  if (!e.finite)
-    throw NumericsError(fmt::format(
-        "interval {}: the fluid is not finite at {}: the step was too long or the cell too coarse "
-        "for this flow (Re_h = {:.3g}); raise fluid.velocity_scale if the flow is faster, else "
-        "take more cells",
-        state, place, plan_.reynolds_cell));
   const double particle =
       ranks_.max(particles ? particles->max_speed() / plan_.units.velocity() : 0.0);
+  const double speed =
+      e.finite ? std::max(e.max_speed, particle) : std::numeric_limits<double>::infinity();
+  if (state > 0) speeds_.add(state * plan_.fluid_steps, speed);
+  const auto why = [&] {
+    const auto all = particles ? particles->gather().particles : std::vector<protocol::Particle>();
+    const bool fluid_is_fastest = !(e.finite && particle > e.max_speed);
+    return diagnosis(scene_, plan_, fluid_is_fastest ? std::optional(x) : std::nullopt, speeds_,
+                     all);
+  };
+  if (!e.finite)
+    throw NumericsError(
+        fmt::format("interval {}: the fluid is not finite at {}.{}", state, place, why()));
   last_speed_ = e.max_speed;
   max_speed_ = std::max(max_speed_, e.max_speed);
   mass_excess_ = e.mass_excess - fluid.mass_in();
   if (state == 0) first_mass_excess_ = mass_excess_;
   if (steady_) steady_->look(fluid);
-  const double speed = std::max(e.max_speed, particle);
   if (speed <= (warned_ ? kStopSpeed : 1.001 * kWarnSpeed)) return;
   const std::string who = e.max_speed > particle ? "the fluid at " + place : "a particle";
   const std::string what =
       fmt::format("{} moves at {:.4g} m/s = {:.3g} C", who, speed * plan_.units.velocity(), speed);
-  const std::string remedy =
-      fmt::format("raise fluid.velocity_scale (now {} m/s)", scene_.fluid.velocity_scale);
   if (speed > kStopSpeed)
     throw NumericsError(
-        fmt::format("interval {}: {}, above {}; {}", state, what, kStopSpeed, remedy));
-  log_.say(state, "warning", "{}, above {}: compressibility error; a run stops at {}; {}", what,
-           kWarnSpeed, kStopSpeed, remedy);
+        fmt::format("interval {}: {}, above {}.{}", state, what, kStopSpeed, why()));
+  const std::string reason = why();  // the ranks gather the particles together
+  log_.say(state, "warning", "{}, above {}: compressibility error; a run stops at {}.{}", what,
+           kWarnSpeed, kStopSpeed, reason);
   warned_ = true;
 }
 

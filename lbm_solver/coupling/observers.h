@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "lbm_solver/coupling/diagnosis.h"
 #include "lbm_solver/coupling/obstacle_loads.h"
 #include "lbm_solver/coupling/output_times.h"
 #include "lbm_solver/coupling/particles.h"
@@ -93,7 +94,8 @@ class Observers {
   std::optional<SteadyWatch> steady_;
   std::optional<FieldWriter> fields_;  // of rank 0, like the tables
   std::int64_t first_, guard_every_, intervals_done_ = 0;
-  double max_speed_ = 0.0, last_speed_ = 0.0;           // of the fluid, lattice units
+  double max_speed_ = 0.0, last_speed_ = 0.0;  // of the fluid, lattice units
+  SpeedRecord speeds_;
   bool warned_ = false;                                 // of a speed above kWarnSpeed
   double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out
   std::chrono::steady_clock::time_point start_, last_progress_;

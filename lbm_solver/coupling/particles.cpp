@@ -18,6 +18,12 @@ Vec3 to_vec3(const protocol::Vec3& v) {
   return {v[0], v[1], v[2]};
 }
 
+/// One number for whom a body is: another particle with the same id is another body.
+std::int64_t body_id(const protocol::Particle& p) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(p.state.id) +
+                                   (static_cast<std::uint64_t>(p.shape.epoch) << 32));
+}
+
 double relaxation_time(const Units& units, const FluidScene& fluid) {
   return 0.5 + 3.0 * fluid.viscosity * units.dt / (units.dx * units.dx);
 }
@@ -48,7 +54,12 @@ std::vector<Particles::Past> Particles::present() const {
     const protocol::State& s = particles_[i].state;
     const auto& sent = whole_.empty() ? loads_ : whole_;
     const protocol::Load load = i < sent.size() ? sent[i] : protocol::Load{};
-    all.push_back({s.id, {s.v, s.omega}, load.force, load.torque, mean_change_[i]});
+    all.push_back({s.id,
+                   particles_[i].shape.epoch,
+                   {s.v, s.omega},
+                   load.force,
+                   load.torque,
+                   mean_change_[i]});
   }
   return all;
 }
@@ -71,6 +82,7 @@ void Particles::arrive(std::span<const protocol::Particle> particles, double int
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const protocol::State& s = particles[i].state;
     before_[i] = past_of(i, s.id);
+    if (before_[i] && before_[i]->epoch != particles[i].shape.epoch) before_[i] = nullptr;
     if (!before_[i]) continue;
     const Past& past = *before_[i];
     const auto change = [this](const protocol::Vec3& now, const protocol::Vec3& past,
@@ -118,7 +130,7 @@ std::span<const Body> Particles::bodies(double elapsed) {
     const protocol::State& s = particles_[i].state;
     const Vec3 velocity = to_vec3(s.v), centre = to_vec3(s.x) + elapsed * velocity;
     Body& b = bodies_[i];
-    b = {s.id, units_.to_lattice_position(centre), covered_radius(i) / units_.dx,
+    b = {body_id(particles_[i]), units_.to_lattice_position(centre), covered_radius(i) / units_.dx,
          units_.to_lattice_velocity(velocity), units_.to_lattice_spin(to_vec3(s.omega))};
     if (!flat_) continue;
     b.centre.z() = b.velocity.z() = 0.0;
@@ -214,7 +226,7 @@ std::span<const protocol::Load> Particles::mean_loads(int steps) {
 
 namespace {
 
-constexpr std::size_t kKept = 19;  // id and six vectors
+constexpr std::size_t kKept = 20;  // id, epoch and six vectors
 
 void keep(std::vector<double>& memory, std::initializer_list<protocol::Vec3> vectors) {
   for (const protocol::Vec3& v : vectors) memory.insert(memory.end(), v.begin(), v.end());
@@ -266,7 +278,7 @@ std::vector<protocol::Load> Particles::latest_loads() const {
     const auto found = at.find(load.id);
     if (found == at.end())
       latest.push_back(load);
-    else
+    else if (before_[found->second])  // else of the one that had its id before
       latest[found->second] = load;
   }
   return latest;
@@ -325,7 +337,7 @@ std::vector<double> Particles::memory() const {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!at_home(i)) continue;
     const Past& p = all[i];
-    memory.push_back(static_cast<double>(p.id));
+    memory.insert(memory.end(), {static_cast<double>(p.id), static_cast<double>(p.epoch)});
     keep(memory,
          {p.motion.v, p.motion.omega, p.force, p.torque, p.mean_change.v, p.mean_change.omega});
   }
@@ -343,6 +355,7 @@ void Particles::restore(std::span<const double> memory) {
     const double* from = &memory[kKept * i];
     protocol::State& s = particles_[i].state;
     s.id = loads_[i].id = static_cast<std::int64_t>(*from++);
+    particles_[i].shape.epoch = static_cast<std::int64_t>(*from++);
     for (protocol::Vec3* v : {&s.v, &s.omega, &loads_[i].force, &loads_[i].torque,
                               &mean_change_[i].v, &mean_change_[i].omega}) {
       std::copy_n(from, 3, v->begin());

@@ -83,7 +83,8 @@ class Particles {
   const protocol::BondReport* bonds() const { return bonds_ ? &*bonds_ : nullptr; }
   void tell_bonds(const std::optional<protocol::BondReport>& bonds) { bonds_ = bonds; }
 
-  /// Takes the particles of a new interval of `interval` seconds.
+  /// Takes the particles of a new interval of `interval` seconds. One whose shape has another epoch
+  /// than before starts anew: nothing that was known of the one with its id holds for it.
   void arrive(std::span<const protocol::Particle> particles, double interval);
 
   std::size_t size() const { return particles_.size(); }
@@ -127,7 +128,7 @@ class Particles {
   };
   /// What is kept of a particle from one interval to the next.
   struct Past {
-    std::int64_t id = 0;
+    std::int64_t id = 0, epoch = 0;
     Motion motion;
     protocol::Vec3 force{}, torque{};  ///< as sent, whole where virtual masses are about
     Motion mean_change;                ///< of the last intervals (LightRule)

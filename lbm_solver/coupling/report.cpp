@@ -145,7 +145,7 @@ std::string describe(const Scene& s, const Plan& p) {
     line("collision", fmt::format("{} [{}]", p.kernel.collision, p.collision_reason));
   if (!p.solid_reason.empty())
     line("solids", fmt::format("{}, {} [{}]", p.scheme, p.kernel.solid_term, p.solid_reason));
-  if (!p.expected_error.empty()) line("error", p.expected_error + " [of regular arrays]");
+  if (!p.expected_error.empty()) line("error", p.expected_error);
   line("duration", fmt::format("{:.6g} s = {} intervals", s.end_time, p.intervals));
   for (const std::string& w : p.warnings) line("warning", w);
   return out;

@@ -13,6 +13,7 @@
 #include "lbm_solver/io/checkpoint.h"
 #include "protocol/program.h"
 #include "protocol/solid_parts.h"
+#include "protocol/walls.h"
 
 namespace lbm {
 namespace {
@@ -129,6 +130,9 @@ class CoupledRun {
     log.say(start_.interval, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s{}",
             partner_.program, partner_.program_version, plan.substeps, plan.interval(),
             scene.coupling->overlapped ? ", overlapped" : "");
+    for (const std::string& wall :
+         protocol::one_sided_walls(make_hello(scene, plan, start_, ranks.cells()), partner_))
+      log.say(start_.interval, "warning", "{}", wall);
     if (options.restart.empty()) return;
     fluid_.restore(state_);
     particles_.restore(state_.at("particles"));

@@ -9,14 +9,14 @@
 namespace lbm {
 
 std::unique_ptr<BodyScheme> make_scheme(const std::string& name, const Domain& domain,
-                                        const Lattice& lattice, const SchemeParameters& p) {
+                                        const Lattice& lattice, double spring_stiffness) {
   if (name == "bounce_back")
-    return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::HalfWay, 2.0 * p.half_force);
+    return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::HalfWay);
   if (name == "interpolated_bounce_back")
-    return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::Interpolated,
-                                          2.0 * p.half_force);
-  if (name == "implicit_immersed_boundary") return std::make_unique<ImplicitMarkers>(domain, p);
-  if (name == "spring_immersed_boundary") return std::make_unique<SpringMarkers>(domain, p);
+    return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::Interpolated);
+  if (name == "implicit_immersed_boundary") return std::make_unique<ImplicitMarkers>(domain);
+  if (name == "spring_immersed_boundary")
+    return std::make_unique<SpringMarkers>(domain, spring_stiffness);
   std::string known;
   for (const std::string& n : known_schemes()) known += " " + n;
   throw std::invalid_argument("no scheme '" + name + "'; known:" + known);

@@ -32,18 +32,20 @@ class BodyScheme {
   /// State that a checkpoint must keep.
   virtual std::vector<double> memory() const { return {}; }
   virtual void restore(const std::vector<double>&) {}
+
+  /// The body force on a cell in the coming step, lattice units; the fluid tells it.
+  void set_body_force(const Vec3& force) { body_force_ = force; }
+
+ protected:
+  Vec3 body_force_ = Vec3::Zero();  // rho u = Σ c f + F/2
 };
 
-/// What a scheme needs to know of the fluid.
-struct SchemeParameters {
-  Vec3 half_force;                  ///< half the body force on a cell: rho u = Σ c f + F/2
-  double spring_stiffness = 0.001;  ///< of the spring scheme, force a surface element and stretch
-};
-
-/// @param name  one of known_schemes() without the first; in three dimensions links only
+/// @param name              one of known_schemes() without the first; in three dimensions links
+/// only
+/// @param spring_stiffness  of the spring scheme, force a surface element and stretch
 /// @throws std::invalid_argument naming the known ones
 std::unique_ptr<BodyScheme> make_scheme(const std::string& name, const Domain& domain,
-                                        const Lattice& lattice, const SchemeParameters& parameters);
+                                        const Lattice& lattice, double spring_stiffness = 0.001);
 /// "immersed_moving_boundary" and the passes.
 std::vector<std::string> known_schemes();
 

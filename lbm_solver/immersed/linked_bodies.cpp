@@ -30,12 +30,10 @@ CellMoments moments_of(const Populations& f, const EsotericPull& stream, const C
 
 }  // namespace
 
-LinkedBodies::LinkedBodies(const Domain& domain, const Lattice& lattice, WallPlace place,
-                           const Vec3& body_force)
+LinkedBodies::LinkedBodies(const Domain& domain, const Lattice& lattice, WallPlace place)
     : domain_(domain),
       lattice_(lattice),
       place_(place),
-      body_force_(body_force),
       owners_(static_cast<std::size_t>(domain.nx) * domain.ny * domain.nz, -1) {}
 
 bool LinkedBodies::inside(Cell3& cell) const {
@@ -104,7 +102,7 @@ void LinkedBodies::find_links() {
 }
 
 /// Cells that became solid or fluid since the step before, and the fluid inside the solids, which
-/// is held at rest in their frame.
+/// is held at rest in their frame: they take the body force of the cells that they hold.
 void LinkedBodies::change_cells(const Owners& before, Populations& f, const EsotericPull& stream) {
   each_cell([&](const Cell3& cell) {
     const std::int32_t was = before[index(cell)], is = owners_[index(cell)];

@@ -26,9 +26,7 @@ enum class WallPlace {
 /// [AidunLuDing1998]. Mass is not conserved there.
 class LinkedBodies final : public BodyScheme {
  public:
-  /// @param body_force  on a cell; the solid takes that of the cells that it holds
-  LinkedBodies(const Domain& domain, const Lattice& lattice, WallPlace place,
-               const Vec3& body_force);
+  LinkedBodies(const Domain& domain, const Lattice& lattice, WallPlace place);
 
   void before_sweep(std::span<const Body> bodies, Populations& f,
                     const EsotericPull& stream) override;
@@ -64,7 +62,6 @@ class LinkedBodies final : public BodyScheme {
   Domain domain_;
   const Lattice& lattice_;
   WallPlace place_;
-  Vec3 body_force_;
   std::vector<Body> bodies_;
   std::vector<std::int64_t> ids_before_;
   Owners owners_;

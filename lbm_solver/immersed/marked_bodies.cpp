@@ -56,7 +56,7 @@ void MarkedBodies::mark(Marked& marked) const {
 Vec3 MarkedBodies::velocity(std::int32_t cell, const Populations& f,
                             const EsotericPull& stream) const {
   const CellMoments m = cell_moments(f, stream, cell % domain_.nx, cell / domain_.nx, 0);
-  return (m.j + parameters_.half_force) / (1.0 + m.drho);
+  return (m.j + 0.5 * body_force_) / (1.0 + m.drho);
 }
 
 void MarkedBodies::shift(std::int32_t cell, const Vec3& change, Populations& f,
@@ -135,7 +135,7 @@ std::vector<Vec3> SpringMarkers::changes(const Marked& marked, const std::vector
   std::vector<Vec3> change;
   for (std::size_t k = 0; k < slip.size(); ++k) {
     stretch[k] -= slip[k];
-    change.emplace_back(-parameters_.spring_stiffness * stretch[k]);
+    change.emplace_back(-stiffness_ * stretch[k]);
   }
   return change;
 }

@@ -19,8 +19,7 @@ namespace lbm {
 /// with covered cells. In two dimensions only.
 class MarkedBodies : public BodyScheme {
  public:
-  MarkedBodies(const Domain& domain, const SchemeParameters& parameters)
-      : domain_(domain), parameters_(parameters) {}
+  explicit MarkedBodies(const Domain& domain) : domain_(domain) {}
 
   void before_sweep(std::span<const Body> bodies, Populations& f,
                     const EsotericPull& stream) override;
@@ -56,11 +55,6 @@ class MarkedBodies : public BodyScheme {
              const EsotericPull& stream) const;
 
   Domain domain_;
-
- protected:
-  SchemeParameters parameters_;
-
- private:
   std::vector<Marked> marked_;
   std::vector<BodyLoad> loads_;
 };
@@ -83,12 +77,15 @@ class ImplicitMarkers final : public MarkedBodies {
 /// paper A Eqs 31-32: force on the fluid -κ ξ an element, dξ/dt = u - U.
 class SpringMarkers final : public MarkedBodies {
  public:
-  using MarkedBodies::MarkedBodies;
+  /// @param stiffness  κ, force a surface element and stretch, lattice units
+  SpringMarkers(const Domain& domain, double stiffness)
+      : MarkedBodies(domain), stiffness_(stiffness) {}
   std::vector<double> memory() const override;
   void restore(const std::vector<double>& memory) override;
 
  private:
   std::vector<Vec3> changes(const Marked& marked, const std::vector<Vec3>& slip) override;
+  double stiffness_;
   std::map<std::int64_t, std::vector<Vec3>> stretch_;  // by disc id
 };
 

@@ -24,10 +24,9 @@ struct OddGhost {
   }
 };
 
-/// Λ of TRT where cells collide by resistance. A half-way wall, and with it a covered cell, then
-/// sees a parabola whose cell values have the flux of the exact one within (Λ - 1/8)·2/3 H G/ν;
-/// with 3/16 its values are exact and its flux is not, which is what a drag or a permeability is
-/// made of.
+/// Λ of TRT where cells collide by resistance. Between planes at a distance H the flux of a parabola
+/// is too large by (Λ - 1/8)·2/3 H G/ν, its values by (Λ - 3/16)·2/3 G/ν. A drag is made of fluxes,
+/// and arrays of discs and spheres come out best with 1/10.
 inline constexpr double kResistanceMagic = 0.1;
 
 /// How fast a covered cell exchanges its odd half with the solid. Of momentum w (against the
@@ -44,9 +43,9 @@ struct OddExchange {
 ///   N = | ¾ t²/ε - ⅜ μ   -⅜ μ/r      |,   t = 1 - ε,
 ///       | -⅜ μ/r          ⅜ (t - μ/2) |
 /// and ⅜ (t - μ/2) for the rest. Then shear flow along a plane sees it where it is, at every ε and
-/// every τ, and flow under a pressure gradient does so as at a half-way wall. μ(ε) is free, but
-/// that N is positive and that nothing jumps where ε → 0: there the rest relaxes as in fluid, so
-/// μ(0) = 2 - 16 Λ/3. It falls with t³, which planes of all directions like best.
+/// every τ, and flow under a pressure gradient does so as at a half-way wall. Two conditions bind
+/// μ(ε): N is positive, and at ε → 0 the rest relaxes as in fluid, so μ(0) = 2 - 16 Λ/3. It falls
+/// with t³, with which planes of other directions lie nearest to where they are.
 /// @param eps     solid fraction, 0..1; at 1 all of the odd half is reflected about the solid
 /// @param s       τ - 1/2
 /// @param mu_zero μ(0)

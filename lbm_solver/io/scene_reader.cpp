@@ -78,6 +78,10 @@ FluidScene read_fluid(TableReader t, int d) {
   fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
   fluid.gravity = t.vector_or_zero("gravity", d, "[m/s²]");
   fluid.body_force = t.vector_or_zero("body_force", d, "[m/s²]");
+  fluid.body_force_ramp = t.number_or("body_force_ramp", 0.0, Bounds::non_negative(), "s");
+  if (fluid.body_force_ramp > 0.0 && fluid.body_force.norm() == 0.0)
+    t.fail("body_force_ramp", "stands beside a body_force of zero",
+           "give body_force, or leave it out");
   fluid.velocity_scale = t.number("velocity_scale", Bounds::positive(), "m/s");
   t.finish();
   return fluid;

@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
+
+#include "lbm_solver/immersed/resistance.h"
 
 namespace lbm {
 namespace {
@@ -85,7 +88,8 @@ std::span<const Row> rows_of(const std::string& term, int dimension) {
   return {};
 }
 
-/// Between two places of a row, linear; beyond its ends as 1/D², which errors fall with.
+/// Between two places of a row, linear; above its end as 1/D², which errors fall with; below its
+/// start the error there.
 double at_diameter(const Row& row, double diameter) {
   const auto& d = row.diameter;
   if (diameter >= d.back()) return row.error.back() * std::pow(d.back() / diameter, 2);
@@ -95,18 +99,51 @@ double at_diameter(const Row& row, double diameter) {
   return std::lerp(row.error[i - 1], row.error[i], part);
 }
 
+// Central moments with layered Noble–Torczynski: discs, c = 0.2, by relaxation time and size.
+constexpr double kTaus[] = {0.505, 0.6, 1.0, 1.5}, kSizes[] = {5.0, 10.0, 20.0};
+constexpr double kCentralMoments[][4] = {
+    {8.6, -9.7, -28.2, -41.2}, {5.9, -2.6, -10.3, -17.5}, {3.7, -0.5, -3.5, -6.6}};
+
+/// Place among the numbers of a list: the one before, and the part of the way to the next.
+std::pair<std::size_t, double> place_in(std::span<const double> list, double x) {
+  std::size_t i = 0;
+  while (i + 2 < list.size() && list[i + 1] < x) ++i;
+  return {i, std::clamp((x - list[i]) / (list[i + 1] - list[i]), 0.0, 1.0)};
+}
+
+ExpectedError of_central_moments(double tau, double diameter) {
+  const auto [i, along] = place_in(kTaus, tau);
+  const auto [k, size] = place_in(kSizes, diameter);
+  const auto at = [&, i = i, along = along](const double(&row)[4]) {
+    return std::lerp(row[i], row[i + 1], along);
+  };
+  const double error = std::lerp(at(kCentralMoments[k]), at(kCentralMoments[k + 1]), size);
+  return {error * std::min(1.0, kSizes[2] / diameter), diameter < kSizes[0]};
+}
+
+/// Whether the tables of arrays, which were made with TRT and each term's own Λ, hold.
+bool tabulated(const KernelChoice& k) {
+  return k.collision == "trt" && k.turbulence == "none" &&
+         k.parameters.magic == (by_resistance(k.solid_term) ? kResistanceMagic : 3.0 / 16.0);
+}
+
 }  // namespace
 
-std::optional<double> expected_error(const std::string& solid_term, int dimension, double fraction,
-                                     double diameter) {
-  const std::span<const Row> rows = rows_of(solid_term, dimension);
-  if (rows.empty()) return std::nullopt;
+std::optional<ExpectedError> expected_error(const KernelChoice& kernel, int dimension,
+                                            double fraction, double diameter) {
+  if (dimension == 2 && kernel.collision == "central_moment" &&
+      kernel.solid_term == "layered_noble_torczynski")
+    return of_central_moments(kernel.parameters.tau, diameter);
+  const std::span<const Row> rows = rows_of(kernel.solid_term, dimension);
+  if (rows.empty() || !tabulated(kernel)) return std::nullopt;
   std::size_t i = 1;
   while (i + 1 < rows.size() && rows[i].fraction < fraction) ++i;
   const Row &low = rows[i - 1], &high = rows[i];
   const double part =
       std::clamp((fraction - low.fraction) / (high.fraction - low.fraction), 0.0, 1.0);
-  return std::lerp(at_diameter(low, diameter), at_diameter(high, diameter), part);
+  return ExpectedError{
+      std::lerp(at_diameter(low, diameter), at_diameter(high, diameter), part),
+      fraction > rows.back().fraction * 1.001 || diameter < high.diameter.front() - 0.5};
 }
 
 }  // namespace lbm

@@ -20,10 +20,8 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
     : ranks_(std::make_shared<Decomposition>(ranks)),
       f_(lbm::lattice(choice.lattice), cells().size, choice.precision),
       stream_(cells().faces),
+      choice_(choice),
       kernel_(make_kernel(choice)),
-      half_force_(choice.force ? 0.5 * choice.parameters.force_x : 0.0,
-                  choice.force ? 0.5 * choice.parameters.force_y : 0.0,
-                  choice.force ? 0.5 * choice.parameters.force_z : 0.0),
       halo_(ranks.alone() ? nullptr : std::make_unique<HaloExchange>(*ranks_, f_)),
       cover_(choice.solid_term == "none"
                  ? nullptr
@@ -32,8 +30,11 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
       medium_{choice.parameters, choice.turbulence != "none", cover_.get(),
               SolidShare(choice.solid_term, choice.weight, choice.parameters)},
       two_steps_(load_lag(choice.solid_term, choice.parameters.tau)) {
-  if (!choice.force)
-    medium_.parameters.force_x = medium_.parameters.force_y = medium_.parameters.force_z = 0.0;
+  if (!choice.force) {
+    CollisionParameters& p = choice_.parameters;
+    p.force_x = p.force_y = p.force_z = 0.0;
+    medium_.parameters = p;
+  }
   if (lattice().D != domain().dimension())
     throw std::invalid_argument(std::string(lattice().name) + " for a box of " +
                                 std::to_string(domain().dimension()) + " dimensions");
@@ -41,7 +42,31 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
 
 void Fluid::set_equilibrium(const Cell3& cell, double rho, const Vec3& u) {
   // the step adds the other half of a body force
-  lbm::set_equilibrium(f_, stream_, cell, rho - 1.0, u - half_force_ / rho);
+  lbm::set_equilibrium(f_, stream_, cell, rho - 1.0, u - 0.5 * body_force() / rho);
+}
+
+Vec3 Fluid::body_force() const {
+  const CollisionParameters& p = medium_.parameters;
+  return {p.force_x, p.force_y, p.force_z};
+}
+
+void Fluid::ramp_body_force(const InTime& in_time) {
+  force_in_time_ = in_time;
+  set_body_force();
+}
+
+/// That of the coming step. A kernel knows one force: while the force comes up, every step has a
+/// kernel of its own.
+void Fluid::set_body_force() {
+  const double part = force_in_time_.factor(steps_ + 1);
+  KernelChoice now = choice_;
+  for (double CollisionParameters::*component :
+       {&CollisionParameters::force_x, &CollisionParameters::force_y,
+        &CollisionParameters::force_z})
+    now.parameters.*component *= part;
+  kernel_ = make_kernel(now);
+  medium_.parameters = now.parameters;
+  if (scheme_) scheme_->set_body_force(body_force());
 }
 
 void Fluid::place(std::span<const Body> bodies) {
@@ -134,6 +159,14 @@ void Fluid::advance(std::int64_t steps) {
 }
 
 void Fluid::make_steps(std::int64_t steps) {
+  for (; steps > 0 && static_cast<double>(steps_) < force_in_time_.ramp_steps; --steps) {
+    make_steps_under_force(1);
+    set_body_force();
+  }
+  if (steps > 0) make_steps_under_force(steps);
+}
+
+void Fluid::make_steps_under_force(std::int64_t steps) {
   const bool passes = scheme_ || !patches_.empty();
   std::function<double(const Cell3&)> solids;
   if (cover_) solids = [this](const Cell3& c) { return cover_->solid_fraction(c[0], c[1], c[2]); };
@@ -176,7 +209,7 @@ double Fluid::mass_in() const {
 
 Fluid::Cell Fluid::cell(int x, int y, int z) const {
   const CellMoments m = cell_moments(f_, stream_, x, y, z);
-  return {m.drho + 1.0, (m.j + half_force_) / (m.drho + 1.0)};
+  return {m.drho + 1.0, (m.j + 0.5 * body_force()) / (m.drho + 1.0)};
 }
 
 Fluid::Cell Fluid::at(const Vec3& place) {
@@ -375,6 +408,7 @@ void Fluid::restore(const std::map<std::string, std::vector<double>>& state) {
   populations = ranks_->scatter(std::move(populations), lattice().Q);
   steps_ = static_cast<std::int64_t>(clock[0]);
   stream_.set_odd(clock[1] != 0.0);
+  if (force_in_time_.ramp_steps > 0.0) set_body_force();
   each_cell(n, [&](std::size_t number, int x, int y, int z) {
     for (int q = 0; q < lattice().Q; ++q) arriving(q, x, y, z) = populations[number * q_count + q];
   });

@@ -55,7 +55,14 @@ class Fluid {
   void add_wall(const Cell3& from, const Cell3& to) { cover_->add_wall(from, to); }
 
   /// Solids act by a scheme of its own instead of covered cells (which walls keep). One rank only.
-  void use(std::unique_ptr<BodyScheme> scheme) { scheme_ = std::move(scheme); }
+  void use(std::unique_ptr<BodyScheme> scheme) {
+    scheme_ = std::move(scheme);
+    scheme_->set_body_force(body_force());
+  }
+  /// The body force of the kernel's choice comes up as `in_time` says.
+  void ramp_body_force(const InTime& in_time);
+  /// On a cell in the coming step.
+  Vec3 body_force() const;
   /// To be called after the last wall was added.
   void prepare_walls() {
     if (cover_) cover_->update({});
@@ -122,6 +129,8 @@ class Fluid {
  private:
   void sweep_and_exchange(EsotericPull& stream);
   void make_steps(std::int64_t steps);
+  void make_steps_under_force(std::int64_t steps);
+  void set_body_force();
   void remember_loads();
   void moments(int y, int z, std::span<double> rho, const RowVelocity& u, std::span<double> solid);
   void cover_by(const Body& body, int y, int z, const RowVelocity& u, std::span<double> solid);
@@ -129,8 +138,9 @@ class Fluid {
   std::shared_ptr<const Decomposition> ranks_;
   Populations f_;
   EsotericPull stream_;
+  KernelChoice choice_;
   std::unique_ptr<Kernel> kernel_;
-  Vec3 half_force_;  // half the body force: rho u = Σ c f + F/2
+  InTime force_in_time_;
   std::unique_ptr<HaloExchange> halo_;
   std::unique_ptr<CoverMap> cover_;
   RowMedium medium_;

@@ -219,33 +219,52 @@ double fraction_at_rest(const Scene& s) {
   return covered / box;
 }
 
-/// What the drag will be off by, and a warning above kLargeError.
+std::string text_of(const ExpectedError& error) {
+  const double shown = std::abs(error.percent) < 0.05 ? 0.0 : error.percent;
+  return error.at_least ? fmt::format("more than {:.1f} %", std::abs(shown))
+                        : fmt::format("{:+.1f} %", shown);
+}
+
+/// What the drag will be off by, and a warning above kLargeError. Not of bodies in a flow that is
+/// not slow, or in a shell: that is no array.
 void expect_error(const Scene& s, Plan& plan) {
   double smallest = s.particles ? s.particles->diameter.lo : 0.0;
-  for (const ObstacleScene& o : s.obstacles)
-    if (o.round && !o.hollow && (smallest == 0.0 || o.diameter < smallest)) smallest = o.diameter;
-  if (smallest == 0.0) return;
-  const int d = s.box.dimension;
-  const double cells = smallest / plan.units.dx;
-  const auto error = [&](double fraction) {
-    return expected_error(plan.kernel.solid_term, d, fraction, cells);
-  };
-  const double loose = s.coupling ? kLooseBed[d - 2] : fraction_at_rest(s);
-  const auto first = error(loose);
-  if (!first) return;
-  plan.expected_error = fmt::format("drag {:+.1f} % at a solid fraction of {:.2g}", *first, loose);
-  double largest = std::abs(*first), where = loose;
-  if (s.coupling) {
-    const double dense = kDenseBed[d - 2], second = *error(dense);
-    plan.expected_error += fmt::format(", {:+.1f} % at {:.2g}", second, dense);
-    if (std::abs(second) > largest) largest = std::abs(second), where = dense;
+  for (const ObstacleScene& o : s.obstacles) {
+    if (o.round && o.hollow) return;
+    if (o.round && (smallest == 0.0 || o.diameter < smallest)) smallest = o.diameter;
   }
-  if (!by_resistance(plan.kernel.solid_term)) plan.expected_error += " (for τ = 1)";
-  if (largest > kLargeError)
-    plan.warnings.push_back(fmt::format(
-        "with {:.3g} cells a diameter the drag is some {:.0f} % off at a solid fraction "
-        "of {:.2g}; take more cells if the bed is that dense",
-        cells, largest, where));
+  if (smallest == 0.0 || (!s.coupling && plan.reynolds > 1.0)) return;
+  const int d = s.box.dimension;
+  const double ratio = s.particles ? std::ranges::min(s.particles->hydraulic_ratio) : 1.0;
+  const double cells = ratio * smallest / plan.units.dx;
+  std::vector<double> fractions{s.coupling ? kLooseBed[d - 2] : fraction_at_rest(s)};
+  if (s.coupling && plan.kernel.collision == "trt")
+    fractions.push_back(std::min(kDenseBed[d - 2], kPackedBed[d - 2] * std::pow(ratio, d)));
+  ExpectedError worst;
+  double where = 0.0;
+  for (const double fraction : fractions) {
+    const auto error = expected_error(plan.kernel, d, fraction, cells);
+    if (!error) {
+      plan.expected_error = fmt::format("not tabulated for {} with {}: compare with a finer cell",
+                                        plan.kernel.collision, plan.kernel.solid_term);
+      return;
+    }
+    plan.expected_error +=
+        fmt::format("{}{} at a solid fraction of {:.3g}",
+                    plan.expected_error.empty() ? "drag " : ", ", text_of(*error), fraction);
+    if (error->at_least || std::abs(error->percent) > std::abs(worst.percent))
+      worst = *error, where = fraction;
+  }
+  plan.expected_error +=
+      by_resistance(plan.kernel.solid_term)
+          ? " [slow flow through regular arrays]"
+          : fmt::format(" [slow flow through regular arrays, τ = {:.3g}]",
+                        plan.kernel.collision == "trt" ? 1.0 : plan.kernel.parameters.tau);
+  if (worst.at_least || std::abs(worst.percent) > kLargeError)
+    plan.warnings.push_back(
+        fmt::format("with {:.3g} cells a diameter the drag is {} {:.0f} % off at a solid fraction "
+                    "of {:.3g}; take more cells if the bed is that dense",
+                    cells, worst.at_least ? "more than" : "some", std::abs(worst.percent), where));
 }
 
 void choose_kernel(const Scene& s, Plan& plan) {

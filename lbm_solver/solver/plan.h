@@ -31,7 +31,7 @@ struct Plan {
   std::string collision_reason;  ///< why auto took what it took; empty where it was given
   std::string step_limit;        ///< what chose the fluid step
   std::string substep_limit;     ///< what chose the substeps
-  std::string expected_error;    ///< of the drag on bodies; empty where there are none, or no table
+  std::string expected_error;    ///< of the drag on bodies; empty where there are none
   std::vector<std::string> warnings;
 
   double interval() const { return units.dt * fluid_steps; }  ///< [s]

@@ -2,6 +2,7 @@
 #include "lbm_solver/solver/row_moments.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lbm_solver/base/simd.h"
 #include "lbm_solver/collision/forcing.h"
@@ -47,7 +48,20 @@ class MomentsOfRow {
     where(solid.cover == Pack(0.0), share) = Pack(0.0);
     for (int a = 0; a < L::D; ++a)  // what is not finite stays so: 0 times it is not 0
       mean[a] = (Pack(1.0) - share) * mean[a] + share * solid.u[a];
+    if (medium_.share.takes_ghost()) take_ghost(g, m, solid.cover, tau, mean);
     return share;
+  }
+
+  void take_ghost(const Pack (&g)[L::Q], const Moments<L, Pack>& m, const Pack& cover,
+                  const Pack& tau, Vector<L, Pack>& mean) const {
+    constexpr double r2 = OddGhost<L>::ratio2;
+    Pack part = medium_.share.of_ghost<L>(cover, tau) / (m.drho + Pack(1.0));
+    where(cover == Pack(0.0), part) = Pack(0.0);
+    unroll<L::D>([&](auto a) {
+      const Pack along_axis = g[2 * a + 1] - g[2 * a + 2];
+      const Pack z = (along_axis - Pack(r2) * (m.j[a] - along_axis)) * Pack(1.0 / std::sqrt(r2));
+      mean[a] -= part * z;
+    });
   }
 
   const RowMedium& medium_;

@@ -7,6 +7,9 @@
 #include <cmath>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/boundary/patch.h"
+#include "lbm_solver/immersed/solid_term.h"
+#include "lbm_solver/solver/driven_speed.h"
 
 namespace lbm {
 namespace {
@@ -15,6 +18,11 @@ constexpr double kLightest = 0.1;                   // density of a particle ove
 constexpr double kDeepRest = 0.05, kDeepHit = 1.0;  // overlap over radius that goes unremarked
 constexpr double kManyBytes = 20e9;                 // of fields
 constexpr double kThick = 0.1;                      // m²/s: more than any honey
+constexpr double kMuchFaster = 30.0;    // than velocity_scale: grains resist, estimates are rough
+constexpr double kLargeGrain = 0.2;     // m, in a coupled scene
+constexpr double kLargeReynolds = 1e5;  // of a cell
+constexpr double kThinObstacle = 4.0;   // cells
+constexpr double kTouch = 1e-3;         // overlap over a diameter that rounding may make
 
 std::string place_text(const Scene& s, const Vec3& x) {
   return s.box.dimension == 2 ? fmt::format("[{:.6g}, {:.6g}]", x.x(), x.y())
@@ -73,6 +81,48 @@ void check_starts(const Scene& s) {
                          fmt::format("keep centres a diameter apart, {:.6g} m", 2.0 * r));
     }
   }
+}
+
+/// Shortest vector between two places of the box.
+Vec3 apart(const Scene& s, const Vec3& a, const Vec3& b) {
+  Vec3 way = b - a;
+  for (int k = 0; k < s.box.dimension; ++k)
+    if (s.box.sides[k] == SideKind::Periodic) way[k] = std::remainder(way[k], s.box.size[k]);
+  return way;
+}
+
+/// How far a ball lies in an obstacle, over its diameter; not positive outside. @param r  its
+/// radius
+double depth_in(const Scene& s, const ObstacleScene& o, const Vec3& x, double r) {
+  if (o.round && o.hollow) return (apart(s, o.centre, x).norm() + r - 0.5 * o.diameter) / (2.0 * r);
+  if (o.round) return (0.5 * o.diameter + r - apart(s, o.centre, x).norm()) / (2.0 * r);
+  Vec3 outside = Vec3::Zero();
+  for (int k = 0; k < s.box.dimension; ++k)
+    outside[k] = std::max({o.from[k] - x[k], x[k] - o.to[k], 0.0});
+  return (r - outside.norm()) / (2.0 * r);
+}
+
+/// Particles that the scene starts in an obstacle.
+void check_starts_in_obstacles(const Scene& s) {
+  const double r = 0.5 * s.particles->diameter.lo;
+  for (const Vec3& x : s.particles->start)
+    for (const ObstacleScene& o : s.obstacles)
+      if (depth_in(s, o, x, r) > kTouch)
+        throw InputError(
+            s.file + ": particles.start",
+            fmt::format("{} with radius {:.6g} m lies in the obstacle at {}", place_text(s, x), r,
+                        place_text(s, o.round ? o.centre : o.from)),
+            "move the particle or the obstacle");
+}
+
+void check_points(const Scene& s) {
+  for (const Vec3& x : s.output.points)
+    for (int k = 0; k < s.box.dimension; ++k) {
+      const double lo = s.box.origin[k], hi = lo + s.box.size[k];
+      if (x[k] < lo || x[k] > hi)
+        throw InputError(s.file + ": output.points", place_text(s, x) + " lies outside the box",
+                         fmt::format("the box is {:.6g} … {:.6g} m in {}", lo, hi, "xyz"[k]));
+    }
 }
 
 void check_obstacle(const Scene& s, const ObstacleScene& o) {
@@ -165,6 +215,86 @@ void check_balance(const Scene& s, Plan& plan) {
                     more > 0.0 ? "enters" : "leaves", more > 0.0 ? "rises" : "falls"));
 }
 
+/// Drives that would make the fluid much faster than the scene says. Velocities have their own
+/// check.
+void check_drives(const Scene& s, Plan& plan) {
+  for (const Drive& drive : drives(s))
+    if (drive.speed > kMuchFaster * s.fluid.velocity_scale)
+      plan.warnings.push_back(fmt::format(
+          "{} can give {:.2g} m/s, {:.2g} times fluid.velocity_scale: are its value and "
+          "unit right?",
+          drive.what, drive.speed, drive.speed / s.fluid.velocity_scale));
+}
+
+/// Keys that have no effect in this scene.
+void check_idle_keys(const Scene& s, Plan& plan) {
+  if (s.fluid.body_force_ramp > s.end_time)
+    plan.warnings.push_back(
+        fmt::format("fluid.body_force_ramp = {:.4g} s is longer than the run: the force reaches "
+                    "{:.3g} of its value",
+                    s.fluid.body_force_ramp,
+                    InTime{s.fluid.body_force_ramp / plan.units.dt, 0.0}.factor(
+                        static_cast<std::int64_t>(s.end_time / plan.units.dt))));
+  if (s.numerics.weight != "auto" && by_resistance(plan.kernel.solid_term))
+    plan.warnings.push_back(fmt::format("numerics.weight = \"{}\" has no effect: {} has no weight",
+                                        s.numerics.weight, plan.kernel.solid_term));
+}
+
+/// Gravity that points upwards, or that nothing holds.
+void check_gravity(const Scene& s, Plan& plan) {
+  const int up = s.box.dimension - 1;
+  const Vec3& g = s.fluid.gravity;
+  if (g[up] > 0.0)
+    plan.warnings.push_back(
+        fmt::format("fluid.gravity points upwards (+{}): is its sign right?", "xyz"[up]));
+  const bool neutral =
+      s.particles->density.lo == s.fluid.density && s.particles->density.hi == s.fluid.density;
+  for (int k = 0; k < s.box.dimension && !neutral; ++k)
+    if (g[k] != 0.0 && s.box.sides[k] == SideKind::Periodic && s.fluid.body_force[k] == 0.0 &&
+        s.box.pressure_jump[k] == 0.0)
+      plan.warnings.push_back(
+          fmt::format("fluid.gravity acts along {0}, where the box is periodic and nothing holds "
+                      "the particles: they take the fluid along, faster and faster; take "
+                      "sides_{0} = \"wall\", or a fluid.body_force that carries their weight",
+                      "xyz"[k]));
+}
+
+/// Lengths that look like millimetres taken for metres, cells too coarse for anything.
+void check_sizes(const Scene& s, Plan& plan) {
+  if (s.coupling && s.particles->diameter.lo > kLargeGrain)
+    plan.warnings.push_back(
+        fmt::format("particles.diameter = {:.3g} m: lengths are in metres, is that meant?",
+                    s.particles->diameter.lo));
+  if (plan.reynolds_cell > kLargeReynolds)
+    plan.warnings.push_back(
+        fmt::format("Re_h = velocity_scale × cell / viscosity = {:.2g}: a cell sees a turbulent "
+                    "flow of its own; are lengths in metres and the viscosity in m²/s?",
+                    plan.reynolds_cell));
+  for (const ObstacleScene& o : s.obstacles) {
+    double width = o.diameter;
+    if (!o.round) width = (o.to - o.from).head(s.box.dimension).minCoeff();
+    if (o.grain || o.hollow || !o.round || width >= kThinObstacle * plan.units.dx) continue;
+    plan.warnings.push_back(
+        fmt::format("the obstacle at {} is {:.2g} cells wide: the flow past it is not resolved; "
+                    "take a finer cell",
+                    place_text(s, o.centre), width / plan.units.dx));
+  }
+}
+
+/// Obstacles that lie in each other.
+void check_overlaps(const Scene& s, Plan& plan) {
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const ObstacleScene &a = s.obstacles[j], &b = s.obstacles[i];
+      if (a.grain || b.grain || a.hollow || b.hollow || !b.round) continue;
+      if (depth_in(s, a, b.centre, 0.5 * b.diameter) <= kTouch) continue;
+      plan.warnings.push_back(
+          fmt::format("the {}. obstacle lies partly in the {}.: the load on "
+                      "cells that both cover is shared between them",
+                      i + 1, j + 1));
+    }
+}
+
 void check_viscosity(const Scene& s, Plan& plan) {
   if (s.fluid.viscosity > kThick)
     plan.warnings.push_back(fmt::format(
@@ -211,14 +341,21 @@ void check_places(const Scene& s) {
   if (s.particles) {
     check_particles(s);
     check_starts(s);
+    check_starts_in_obstacles(s);
   }
   for (const ObstacleScene& o : s.obstacles) check_obstacle(s, o);
+  check_points(s);
   check_boundaries(s);
 }
 
 void check_meaning(const Scene& s, Plan& plan) {
   check_speed(s, plan);
   check_balance(s, plan);
+  check_drives(s, plan);
+  check_sizes(s, plan);
+  check_idle_keys(s, plan);
+  check_overlaps(s, plan);
+  if (s.coupling) check_gravity(s, plan);
   if (s.coupling) check_viscosity(s, plan);
   if (s.coupling) check_contacts(s, plan);
   check_output(s, plan);

@@ -129,12 +129,10 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
       add_pressure_jump(p, axis, s.box.pressure_jump[axis], fluid);
   for (const ObstacleScene& o : s.obstacles)
     if (!o.round) add_block(s, p, o, fluid);
-  if (p.scheme != known_schemes().front()) {
-    const auto& k = p.kernel.parameters;
-    const Vec3 force = p.kernel.force ? Vec3(k.force_x, k.force_y, k.force_z) : Vec3();
-    fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(),
-                          {0.5 * force, s.numerics.spring_stiffness}));
-  }
+  if (p.scheme != known_schemes().front())
+    fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(), s.numerics.spring_stiffness));
+  if (s.fluid.body_force_ramp > 0.0)
+    fluid.ramp_body_force({s.fluid.body_force_ramp / p.units.dt, 0.0});
   fluid.prepare_walls();
   if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
   if (s.initial.kind == InitialScene::Kind::Rest && !p.kernel.force) return fluid;

@@ -11,12 +11,17 @@
 #include <signal_handling.h>
 #include <update.h>
 
+#include <cmath>
+
 #include "liggghts_coupling/bond/bond_book.h"
 #include "liggghts_coupling/host/coupling.h"
+#include "liggghts_coupling/host/script_checks.h"
 #include "liggghts_coupling/host/solid_hello.h"
+#include "protocol/agreement.h"
 #include "protocol/numbers.h"
 #include "protocol/program.h"
 #include "protocol/trace.h"
+#include "protocol/watch.h"
 
 namespace dem {
 
@@ -40,7 +45,10 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
   atom->add_callback(0);  // held loads follow their particles …
   atom->add_callback(1);  // … and go into restart files
   for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
-  Coupling::instance().session->set_timeout(timeout_);
+  if (timeout_) {
+    Coupling::instance().session->set_timeout(*timeout_);
+    protocol::limit_waits(*timeout_);
+  }
   if (!record_.empty()) begin_recording();
 }
 
@@ -67,7 +75,7 @@ void FixLbmCouple::parse(int narg, char** arg) {
         fail("'every " + value + "': give a whole number of at least 1, e.g. ${substeps}" + usage);
     } else if (key == "timeout") {
       timeout_ = protocol::to_number<double>(value).value_or(0.0);
-      if (!(timeout_ > 0.0))
+      if (!(*timeout_ > 0.0))
         fail("'timeout " + value + "': give a positive number of seconds" + usage);
     } else if (key == "record") {
       record_ = value;
@@ -96,7 +104,7 @@ void FixLbmCouple::begin_recording() const {
 }
 
 int FixLbmCouple::setmask() {
-  return POST_FORCE | END_OF_STEP;
+  return PRE_EXCHANGE | POST_FORCE | END_OF_STEP;
 }
 
 void FixLbmCouple::init() {
@@ -113,6 +121,14 @@ void FixLbmCouple::init() {
                        modify->fix[i]->id, style));
     if (holds) held_still_ |= modify->fix[i]->groupbit;
   }
+}
+
+/// Before LIGGGHTS looks for neighbours, which may take it minutes.
+void FixLbmCouple::setup_pre_exchange() {
+  if (settling_again_) return;
+  const ScriptChecks checks(lmp);
+  checks.refuse_clumps();
+  checks.refuse_overlaps(groupbit);
 }
 
 void FixLbmCouple::setup(int vflag) {
@@ -134,20 +150,29 @@ void FixLbmCouple::setup(int vflag) {
   post_force(vflag);
 }
 
-void FixLbmCouple::begin() {
-  Coupling& coupling = Coupling::instance();
-  if (coupling.agreed) fail("was removed and made anew: keep the first one for all runs");
-  const protocol::Hello& fluid = coupling.session->fluid();
+/// What the script is set up to do.
+protocol::Hello FixLbmCouple::hello() const {
+  const protocol::Hello& fluid = Coupling::instance().session->fluid();
   protocol::Hello hello = SolidHello(lmp, groupbit, substeps_).collect();
   if (hello.buoyancy != protocol::Buoyancy::BySolid)
     hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
                                                                 : protocol::Buoyancy::ByFluid;
-  hello.first_interval = interval_ = fluid.first_interval;
+  hello.first_interval = fluid.first_interval;
   hello.schedule = fluid.schedule;
   hello.features = protocol::kCheckpoints;
+  return hello;
+}
+
+void FixLbmCouple::begin() {
+  Coupling& coupling = Coupling::instance();
+  if (coupling.agreed) fail("was removed and made anew: keep the first one for all runs");
+  const protocol::Hello& fluid = coupling.session->fluid();
+  const protocol::Hello mine = hello();
+  if (*mine.particles > 0) SolidHello(lmp, groupbit, substeps_).expect_motion();
+  interval_ = fluid.first_interval;
   overlapped_ = fluid.schedule == protocol::Schedule::Overlapped;
   parts_ = protocol::SolidParts::of(fluid);
-  coupling.session->agree(hello);
+  coupling.session->agree(mine);
   coupling.agreed = set_up_ = true;
   first_step_ = step_ = update->ntimestep;
   time_step_ = update->dt;
@@ -171,6 +196,26 @@ void FixLbmCouple::go_on() const {
         fmt::format("the time step was {:g} s in the last run and is {:g} s now: the fluid was "
                     "told the first one",
                     time_step_, update->dt));
+  const auto reasons = disagreements(Coupling::instance().session->fluid(), hello());
+  if (!reasons.empty())
+    throw protocol::ProtocolError(fmt::format("at step {}, since the last run, {}",
+                                              update->ntimestep, protocol::Refusal(reasons).what()),
+                                  protocol::kBadInput);
+  begin_anew_where_moved();
+}
+
+/// A particle that the script has put elsewhere or made another size is another one for the fluid.
+void FixLbmCouple::begin_anew_where_moved() const {
+  if (marked_ != update->ntimestep) return;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    bool same = atom->radius[i] == held_[i][kRadius];
+    for (int k = 0; k < 3; ++k) {
+      double way = atom->x[i][k] - held_[i][kPlace + k];
+      if (domain->periodicity[k]) way -= domain->prd[k] * std::round(way / domain->prd[k]);
+      same = same && std::abs(way) <= 1e-9 * domain->prd[k];
+    }
+    if (!same) held_[i][kId] = 0.0;
+  }
 }
 
 void FixLbmCouple::post_force(int) {
@@ -185,7 +230,9 @@ void FixLbmCouple::post_force(int) {
 
 void FixLbmCouple::end_of_step() {
   step_ = update->ntimestep;
-  if (Coupling::instance().over || (update->ntimestep - first_step_) % substeps_ != 0) return;
+  if (Coupling::instance().over) return;
+  if (update->dt != time_step_) ScriptChecks(lmp).refuse_step(time_step_);
+  if ((update->ntimestep - first_step_) % substeps_ != 0) return;
   ++interval_;
   if (underway_) take_loads(true);  // overlapped: of the interval that ends, for the next one
   if (checkpoint_asked_) {
@@ -200,6 +247,11 @@ void FixLbmCouple::end_of_step() {
 
 void FixLbmCouple::post_run() {
   if (Coupling::instance().over) SignalHandler::request_quit = false;  // the script continues
+  marked_ = update->ntimestep;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    std::copy_n(atom->x[i], 3, held_[i] + kPlace);
+    held_[i][kRadius] = atom->radius[i];
+  }
 }
 
 void FixLbmCouple::gather() {
@@ -212,7 +264,12 @@ void FixLbmCouple::gather() {
     const double *x = atom->x[i], *v = atom->v[i], *w = atom->omega[i];
     const double r = atom->radius[i], m = atom->rmass[i];
     states_.push_back({atom->tag[i], {x[0], x[1], x[2]}, {v[0], v[1], v[2]}, {w[0], w[1], w[2]}});
-    shapes_.push_back({atom->tag[i], r, m, factor * m * r * r, atom->type[i]});
+    if (held_[i][kId] != atom->tag[i]) {  // this id has come to this particle
+      held_[i][kId] = atom->tag[i];
+      held_[i][kEpoch] = static_cast<double>(interval_);
+    }
+    shapes_.push_back({atom->tag[i], r, m, factor * m * r * r, atom->type[i],
+                       static_cast<std::int64_t>(held_[i][kEpoch])});
     local_.push_back(i);
   }
 }
@@ -231,10 +288,13 @@ std::optional<protocol::BondReport> FixLbmCouple::bond_report() {
 
 void FixLbmCouple::send_states() {
   Coupling& coupling = Coupling::instance();
+  ScriptChecks(lmp).expect_box(coupling.session->fluid());
   gather();
   const double interval = update->dt * substeps_;
   const std::uint32_t flags =
       (stop_asked_ ? protocol::kLast : 0U) | (settling_again_ ? protocol::kCheckpoint : 0U);
+  const auto corner = [](const double* x) { return protocol::Vec3{x[0], x[1], x[2]}; };
+  coupling.session->set({update->dt, corner(domain->boxlo), corner(domain->boxhi)});
   coupling.session->send({interval_, static_cast<double>(interval_) * interval, flags}, states_,
                          shapes_, bond_report());
   coupling.over = stop_asked_;
@@ -312,35 +372,38 @@ void FixLbmCouple::forward(std::vector<protocol::Load>& orphans, bool add_change
 // ---- held loads travel with their particles ---------------------------------------------------
 
 void FixLbmCouple::grow_arrays(int n) {
-  memory->grow(held_, n, kValues, "lbm/couple:held");
+  memory->grow(held_, n, kColumns, "lbm/couple:held");
   array_atom = held_;
 }
 void FixLbmCouple::copy_arrays(int from, int to, int) {
-  std::copy_n(held_[from], kValues, held_[to]);
+  std::copy_n(held_[from], kColumns, held_[to]);
 }
 void FixLbmCouple::set_arrays(int i) {
-  std::fill_n(held_[i], kValues, 0.0);
+  std::fill_n(held_[i], kColumns, 0.0);
 }
 int FixLbmCouple::pack_exchange(int i, double* buffer) {
-  std::copy_n(held_[i], kValues, buffer);
-  return kValues;
+  std::copy_n(held_[i], kColumns, buffer);
+  return kColumns;
 }
 int FixLbmCouple::unpack_exchange(int i, double* buffer) {
-  std::copy_n(buffer, kValues, held_[i]);
-  return kValues;
+  std::copy_n(buffer, kColumns, held_[i]);
+  return kColumns;
 }
 int FixLbmCouple::pack_restart(int i, double* buffer) {
-  buffer[0] = kValues + 1;  // LIGGGHTS' convention: a fix's record begins with its length
-  std::copy_n(held_[i], kValues, buffer + 1);
-  return kValues + 1;
+  buffer[0] = kKept + 1;  // LIGGGHTS' convention: a fix's record begins with its length
+  std::copy_n(held_[i], kKept, buffer + 1);
+  return kKept + 1;
 }
 void FixLbmCouple::unpack_restart(int i, int nth) {
   const double* record = atom->extra[i];
   for (int n = 0; n < nth; ++n) record += static_cast<int>(record[0]);
-  std::copy_n(record + 1, kValues, held_[i]);
+  if (record[0] != kKept + 1)
+    fail("the restart file is of another version of this fix; start again without it");
+  set_arrays(i);
+  std::copy_n(record + 1, kKept, held_[i]);
 }
 double FixLbmCouple::memory_usage() {
-  return static_cast<double>(atom->nmax) * kValues * sizeof(double);
+  return static_cast<double>(atom->nmax) * kColumns * sizeof(double);
 }
 
 }  // namespace dem

@@ -16,11 +16,12 @@ namespace dem {
 ///
 /// Every N steps: sends position, velocity and angular velocity of the group's particles to the
 /// fluid and receives the mean hydrodynamic force and torque on each for the next N steps, which it
-/// adds at every step. The held loads migrate with the particles, are kept in restart files, and
-/// can be dumped as f_ID[1] … f_ID[6]. A script may have several runs, and insert or delete
-/// particles between them. Where the fluid asks for a checkpoint, LIGGGHTS is set up
-/// anew at that step, as a restart would, and writes its restart file: the run goes on to the bit
-/// as one that was started from it.
+/// adds at every step. An id that passes to another particle (delete_atoms renumbers) gets another
+/// epoch, as does a particle that the script puts elsewhere between runs. The held loads migrate
+/// with the particles, are kept in restart files, and can be dumped as f_ID[1] … f_ID[6]. A script
+/// may have several runs, and insert or delete particles between them. Where the fluid asks for a
+/// checkpoint, LIGGGHTS is set up anew at that step, as a restart would, and writes its restart
+/// file: the run goes on to the bit as one that was started from it.
 class FixLbmCouple final : public LAMMPS_NS::Fix {
  public:
   FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
@@ -28,6 +29,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
 
   int setmask() override;
   void init() override;
+  void setup_pre_exchange() override;
   void setup(int vflag) override;
   void post_force(int vflag) override;
   void end_of_step() override;
@@ -40,19 +42,24 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   int unpack_exchange(int i, double* buffer) override;
   int pack_restart(int i, double* buffer) override;
   void unpack_restart(int i, int nth) override;
-  int size_restart(int) override { return kValues + 1; }
-  int maxsize_restart() override { return kValues + 1; }
+  int size_restart(int) override { return kKept + 1; }
+  int maxsize_restart() override { return kKept + 1; }
   double memory_usage() override;
 
  private:
-  static constexpr int kValues = 6;  ///< force, torque
+  /// Of a particle: force and torque; the id and epoch that the fluid was told last; place and
+  /// radius at the end of the last run.
+  static constexpr int kValues = 6, kId = 6, kEpoch = 7, kKept = 8, kPlace = 8, kRadius = 11,
+                       kColumns = 12;
 
   void parse(int narg, char** arg);
   void begin_recording() const;
   void gather();
   static std::optional<protocol::BondReport> bond_report();
+  protocol::Hello hello() const;
   void begin();
   void go_on() const;
+  void begin_anew_where_moved() const;
   void send_states();
   protocol::SolidSession::Reply collect();
   void take_loads(bool add_change);
@@ -65,11 +72,12 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   [[noreturn]] void fail(const std::string& text) const;
 
   int substeps_ = 0;
-  double timeout_ = 300.0;
+  std::optional<double> timeout_;  ///< [s]; else the fluid's
   std::string record_;
-  double** held_ = nullptr;  ///< [nmax][6] force [N] and torque [N m] of the current interval
+  double** held_ = nullptr;  ///< [nmax][kColumns]; force [N], torque [N m] of this interval, …
   int held_still_ = 0;       ///< groups whose forces fix freeze or setforce sets
   LAMMPS_NS::bigint first_step_ = 0, step_ = 0;  ///< of the first run; the one that ended last
+  LAMMPS_NS::bigint marked_ = -1;                ///< step of which places are kept
   double time_step_ = 0.0;                       ///< [s], of all runs
   double waited_before_ = 0.0;                   ///< [s], until the first step
   std::int64_t interval_ = 0;

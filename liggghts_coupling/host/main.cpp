@@ -23,6 +23,7 @@
 #include "liggghts_coupling/host/script_names.h"
 #include "protocol/input_file.h"
 #include "protocol/program.h"
+#include "protocol/watch.h"
 
 namespace dem {
 
@@ -154,6 +155,7 @@ void run(Arguments& arguments) {
       arguments.insert(arguments.end(), {"-in", "in.liggghts"});
     check_script(arguments);
     coupling.session = std::make_unique<protocol::SolidSession>(*coupling.channel, kHelloSeconds);
+    protocol::limit_waits(coupling.session->timeout());
     add_offered_variables(arguments, coupling.session->fluid());
   } else {
     check_script(arguments);
@@ -180,9 +182,5 @@ int main(int argc, char** argv) {
   }
   if (code == protocol::kOk && coupling.session && protocol::signalled())
     code = protocol::kFault;  // it ended in good order, but early
-  coupling.session.reset();
-  coupling.channel.reset();
-  protocol::disconnect(coupling.world);
-  dem::finalize_mpi();
-  return code;
+  return protocol::finish(code, "liggghts", coupling.channel, coupling.world.local);
 }

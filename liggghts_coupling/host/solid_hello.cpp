@@ -14,6 +14,8 @@
 #include <limits>
 #include <numbers>
 
+#include "liggghts_coupling/host/solid_walls.h"
+
 namespace dem {
 
 using protocol::Hello;
@@ -37,7 +39,7 @@ Hello SolidHello::collect() {
   geometry(hello);
   forces(hello);
   particles(hello);
-  if (*hello.particles > 0) expect_motion();
+  tell_walls(*lmp, hello);
   return hello;
 }
 

@@ -14,12 +14,13 @@ class SolidHello : protected LAMMPS_NS::Pointers {
 
   /// Collective over the DEM ranks. Fails with LIGGGHTS' own error where the set-up cannot couple.
   protocol::Hello collect();
+  /// Warns where no fix moves the particles.
+  void expect_motion() const;
 
  private:
   void geometry(protocol::Hello& hello) const;
   void forces(protocol::Hello& hello) const;
   void particles(protocol::Hello& hello) const;
-  void expect_motion() const;
   int groupbit_, substeps_;
 };
 

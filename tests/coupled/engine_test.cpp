@@ -54,6 +54,50 @@ INSTANTIATE_TEST_SUITE_P(All, EngineTest, testing::ValuesIn(checks()), [](const 
   return std::string(info.param.engine) + "_" + info.param.name;
 });
 
+// As FixTest has it for LIGGGHTS: deleting the first disc gives its id to the second.
+TEST(LammpsEngine, AnIdThatPassesToAnotherParticleGetsAnotherEpoch) {
+  const test::TemporaryFolder folder;
+  folder.write("in.lammps", R"(dimension 2
+units si
+atom_style sphere
+atom_modify map array
+boundary p p p
+newton off
+comm_modify vel yes
+region box block 0 1 0 1 -0.5 0.5 units box
+create_box 1 box
+neighbor 0.02 bin
+pair_style gran/hooke/history 1e5 NULL 1.0 NULL 0.3 1
+pair_coeff * *
+timestep 1e-3
+create_atoms 1 single 0.3 0.3 0.0 units box
+create_atoms 1 single 0.6 0.7 0.0 units box
+set type 1 diameter 0.1
+set type 1 density/disc 254.64790894703253
+fix move all nve/sphere disc
+fix couple all lbm/couple every 10
+fix flat all enforce2d
+run 20
+group gone id 1
+delete_atoms group gone
+run 1000
+)");
+  const auto job =
+      test::run(test::mpirun({test::kBin + "/scripted_peer fluid impulse 4"},
+                             {test::kBin + "/lammps_engine -in in.lammps -screen none"}),
+                folder.path(), 30.0);
+  ASSERT_EQ(job.exit_code, 0) << job.output;
+  std::vector<int> epochs;
+  std::istringstream lines(test::read_file(folder.path() + "/peer.txt"));
+  for (std::string line; std::getline(lines, line);) {
+    int interval = 0, id = 0, epoch = 0;
+    if (std::sscanf(line.c_str(), "state %d %d %*f %*f %*f %*f %d", &interval, &id, &epoch) == 3 &&
+        id == 1)
+      epochs.push_back(epoch);
+  }
+  EXPECT_EQ(epochs, (std::vector<int>{0, 0, 0, 3, 3}));
+}
+
 /// Command of an engine for a scene.
 std::string command_for(const std::string& scene, const std::string& engine) {
   const std::string quiet = " -log none -screen none -in " + scene + "/in." + engine;

@@ -66,14 +66,15 @@ class FixTest : public testing::Test {
 struct StateLine {
   int interval = 0, id = 0;
   double x = 0, vx = 0, vy = 0, omega = 0;
+  int epoch = 0;
 };
 std::vector<StateLine> states(const std::string& received) {
   std::vector<StateLine> lines;
   std::istringstream in(received);
   for (std::string line; std::getline(in, line);) {
     StateLine s;
-    if (std::sscanf(line.c_str(), "state %d %d %lf %lf %lf %lf", &s.interval, &s.id, &s.x, &s.vx,
-                    &s.vy, &s.omega) == 6)
+    if (std::sscanf(line.c_str(), "state %d %d %lf %lf %lf %lf %d", &s.interval, &s.id, &s.x, &s.vx,
+                    &s.vy, &s.omega, &s.epoch) == 7)
       lines.push_back(s);
   }
   return lines;
@@ -123,6 +124,37 @@ TEST_F(FixTest, LaterRunsGoOnAlsoFromTheMiddleOfAnInterval) {
     ASSERT_EQ(job.exit_code, 0) << runs << job.output;
     expect_impulse_of_40_intervals(states(received()));
   }
+}
+
+/// Epochs of a particle, one each interval.
+std::vector<int> epochs(const std::vector<StateLine>& all, int id) {
+  std::vector<int> epochs;
+  for (const auto& s : all)
+    if (s.id == id) epochs.push_back(s.epoch);
+  return epochs;
+}
+
+// delete_atoms gives the id of the first particle to the second: the fluid must not take the two
+// for one. Also on two ranks, and where the particle that keeps its id is moved by the script.
+TEST_F(FixTest, AnIdThatPassesToAnotherParticleGetsAnotherEpoch) {
+  const std::string fix = "fix couple all lbm/couple every 10";
+  const std::string without = "run 20\ngroup gone id 1\ndelete_atoms group gone\nrun ${steps}";
+  for (const int ranks : {1, 2}) {
+    const auto job = couple(script(fix, without), "impulse 5", ranks);
+    ASSERT_EQ(job.exit_code, 0) << job.output;
+    EXPECT_EQ(epochs(states(received()), 1), (std::vector<int>{0, 0, 0, 3, 3, 3})) << received();
+    EXPECT_EQ(epochs(states(received()), 2), (std::vector<int>{0, 0, 0})) << received();
+  }
+}
+
+TEST_F(FixTest, AParticleThatTheScriptMovesBeginsAnew) {
+  const std::string fix = "fix couple all lbm/couple every 10\ngroup second id 2";
+  const std::string moved =
+      "run 25\ndisplace_atoms second move 0.0 0.2 0.0 units box\nrun ${steps}";
+  const auto job = couple(script(fix, moved), "impulse 5");
+  ASSERT_EQ(job.exit_code, 0) << job.output;
+  EXPECT_EQ(epochs(states(received()), 1), (std::vector<int>{0, 0, 0, 0, 0, 0})) << received();
+  EXPECT_EQ(epochs(states(received()), 2), (std::vector<int>{0, 0, 0, 3, 3, 3})) << received();
 }
 
 TEST_F(FixTest, HeldLoadsMigrateBetweenRanks) {
@@ -200,9 +232,10 @@ TEST_F(FixTest, WrongUseIsNamed) {
 }
 
 TEST_F(FixTest, DiscsBesideEachOtherInDepthAreNamed) {
-  expect_error(couple(script("create_atoms 1 single 0.5 0.5 0.2 units box\n"
-                             "fix couple all lbm/couple every 10")),
-               "in two dimensions all lie in one plane");
+  expect_error(
+      couple(script("create_atoms 1 single 0.5 0.5 0.2 units box\nset atom 3 diameter 0.1\n"
+                    "fix couple all lbm/couple every 10")),
+      "in two dimensions all lie in one plane");
 }
 
 TEST_F(FixTest, ParticlesThatNothingMovesAreWarnedOf) {

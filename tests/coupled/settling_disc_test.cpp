@@ -59,9 +59,8 @@ TEST(SettlingDiscCoupled, IsWarnedOfOnceWhenItGetsFast) {
   scene.change_scene("end_time = 0.04", "end_time = 0.4");
   const auto job = scene.run();
   expect_success(job);
-  const std::string warning =
-      "C, above 0.1: compressibility error; a run stops at 0.2; raise "
-      "fluid.velocity_scale (now 0.04 m/s)";
+  const std::string warning = "C, above 0.1: compressibility error; a run stops at 0.2.";
+  EXPECT_NE(job.output.find("set fluid.velocity_scale"), std::string::npos) << job.output;
   const std::size_t first = job.output.find(warning);
   ASSERT_NE(first, std::string::npos) << job.output;
   EXPECT_EQ(job.output.find(warning, first + 1), std::string::npos) << job.output;

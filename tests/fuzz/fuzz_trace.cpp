@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     auto bytes = Table<std::byte>::create(file, "bytes");
     bytes.append(std::as_bytes(std::span(data, std::min<std::size_t>(size, 200))));
     bytes.flush();
-    hdf5::set_attribute(file, "trace_version", std::int64_t{1});
+    hdf5::set_attribute(file, "trace_version", std::int64_t{2});
     hdf5::set_attribute(file, "recorder", std::string("fluid"));
     hdf5::set_attribute(file, "local_rank", std::int64_t{0});
     hdf5::set_attribute(file, "remote_size", std::int64_t{2});

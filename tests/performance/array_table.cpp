@@ -11,6 +11,8 @@
 
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/fluid.h"
+#include "tests/support/array_references.h"
+#include "tests/support/free_disc.h"
 
 namespace lbm {
 namespace {
@@ -21,7 +23,7 @@ using std::numbers::pi;
 struct Array {
   int dimension;
   double fraction;
-  double drag;  ///< discs: F/(mu U) [Sangani, Acrivos 1982]; spheres: F/(6 pi mu a U) [Zick, Homsy]
+  double drag;  ///< discs: F/(μU); spheres: F/(6πμaU)
 
   double radius(int cells) const {
     return cells * (dimension == 2 ? std::sqrt(fraction / pi) : std::cbrt(0.75 * fraction / pi));
@@ -32,13 +34,15 @@ struct Array {
   const char* name() const { return dimension == 2 ? "disc" : "sphere"; }
 };
 
-const std::vector<Array> kDiscs{{2, 0.05, 15.557822}, {2, 0.1, 24.831675},  {2, 0.2, 51.526949},
-                                {2, 0.3, 102.881304}, {2, 0.4, 217.894315}, {2, 0.5, 532.548118}};
-const std::vector<Array> kSpheres{
-    {3, 0.064, 2.810}, {3, 0.125, 4.292}, {3, 0.343, 15.4}, {3, 0.5236, 42.1}};
+std::vector<Array> arrays(int dimension, const std::map<double, double>& drag) {
+  std::vector<Array> list;
+  for (const auto& [fraction, value] : drag) list.push_back({dimension, fraction, value});
+  return list;
+}
+const std::vector<Array> kDiscs = arrays(2, test::kDiscDrag),
+                         kSpheres = arrays(3, test::kSphereDrag);
 const std::vector<double> kDiameters{4, 5, 6, 8, 10, 16};
-const std::vector<Vec3> kPlaces{
-    {0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}, {0.23, 0.41, 0.12}, {0.37, 0.12, 0.45}};
+const std::vector<Vec3>& kPlaces = test::kPlacesInACell;
 
 struct Term {
   std::string term, what;
@@ -48,15 +52,15 @@ const std::vector<Term> kTerms{{"resistance", "default, bodies at rest"},
                                {"holdych", "former default, bodies at rest"},
                                {"layered_holdych", "former default, free bodies"}};
 
-/// Mean over the box of rho u along x of what has arrived, half of the body force in it.
-double momentum(const Fluid& fluid) {
+/// Mean over the box of rho u along an axis of what has arrived, half of the body force in it.
+double momentum(const Fluid& fluid, int axis = 0) {
   const Domain& d = fluid.domain();
   double sum = 0.0;
   for (int z = 0; z < d.nz; ++z)
     for (int y = 0; y < d.ny; ++y)
       for (int x = 0; x < d.nx; ++x) {
         const Fluid::Cell cell = fluid.cell(x, y, z);
-        sum += cell.rho * cell.u.x();
+        sum += cell.rho * cell.u[axis];
       }
   return sum / (1.0 * d.nx * d.ny * d.nz);
 }
@@ -92,10 +96,12 @@ struct Flow {
   Fluid fluid(double sense) const {
     KernelChoice driven = choice;
     driven.parameters.force_x = sense * g;
-    return {array.dimension == 2
-                ? Domain{cells, cells, Side::Periodic, Side::Periodic}
-                : Domain{cells, cells, Side::Periodic, Side::Periodic, cells, Side::Periodic},
-            driven};
+    return {box(), driven};
+  }
+  Domain box() const {
+    return array.dimension == 2
+               ? Domain{cells, cells, Side::Periodic, Side::Periodic}
+               : Domain{cells, cells, Side::Periodic, Side::Periodic, cells, Side::Periodic};
   }
   /// The body at a place in a cell in the middle of the box.
   Body body(const Vec3& place, const Vec3& velocity) const {
@@ -161,6 +167,52 @@ nlohmann::json moving_row(const Array& array, const std::string& term, int cells
           {"diameter", 2.0 * flow.radius},
           {"error_percent", 100.0 * (sum / (flow.nu * relative) / array.exact(cells) - 1.0)},
           {"sigma_percent", 100.0 * std::sqrt(std::max(0.0, squares - sum * sum)) / sum}};
+}
+
+/// Bodies that move by their weight at Re_D = 0.1, the fluid driven against them as hard, with all
+/// that a coupled run does to their loads: error of the drag, which is known, by their speed
+/// against the flux, and the standard deviation of the force over the passage of four cells.
+nlohmann::json free_row(const Array& array, const std::string& term, int cells, double ratio) {
+  const Flow flow(array, term, cells, 1.0, 0.1);
+  KernelChoice driven = flow.choice;
+  driven.parameters.force_y = flow.g;
+  Fluid fluid(flow.box(), driven);
+  Scene scene;
+  const double body_volume = array.fraction * array.volume(cells);
+  const double weight = flow.g * array.volume(cells);  // less the displaced fluid's
+  scene.fluid = {.density = 1.0,
+                 .viscosity = flow.nu,
+                 .gravity = {0.0, -weight / ((ratio - 1.0) * body_volume), 0.0}};
+  scene.coupling.emplace();
+  scene.particles.emplace();
+  const auto start = static_cast<int>(500.0 + 20.0 * (1.0 + ratio) * flow.relaxation);
+  const auto steps = static_cast<int>(std::ceil(4.0 / flow.u));
+  int step = 0;
+  double flux = 0.0, speed = 0.0, sum = 0.0, squares = 0.0;
+  const auto see = [&] {
+    if (step++ >= start) flux += (momentum(fluid, 1) - 0.5 * flow.g) / steps;
+  };
+  const test::FreeRun run = test::free_run(fluid, scene,
+                                           {.ratio = ratio,
+                                            .radius = flow.radius,
+                                            .start = flow.body({0.23, 0.0, 0.41}, Vec3()).centre,
+                                            .steps = start + steps,
+                                            .solid_term = term,
+                                            .seen = see});
+  for (int k = start; k < start + steps; ++k) {
+    speed -= run.velocity[k].y() / steps;
+    sum += run.force_y[k] / steps;
+    squares += run.force_y[k] * run.force_y[k] / steps;
+  }
+  const double relative = speed + flux;
+  return {{"body", array.name()},
+          {"solid_term", term},
+          {"fraction", array.fraction},
+          {"ratio", ratio},
+          {"cells", cells},
+          {"diameter", 2.0 * flow.radius},
+          {"error_percent", 100.0 * (weight / (flow.nu * relative) / array.exact(cells) - 1.0)},
+          {"sigma_percent", 100.0 * std::sqrt(std::max(0.0, squares - sum * sum)) / weight}};
 }
 
 struct Job {
@@ -269,10 +321,39 @@ nlohmann::json table_of_moving() {
   return list;
 }
 
+/// Free discs and spheres, dilute and dense, light and heavy.
+nlohmann::json table_of_free() {
+  struct Passage {
+    const Array* array;
+    const Term* term;
+    int cells;
+    double ratio;
+    nlohmann::json row;
+  };
+  std::vector<Passage> passages;
+  for (const Array* a : {&kDiscs[2], &kDiscs[4], &kSpheres[1], &kSpheres[2]})
+    for (const Term* t : {&kTerms[1], &kTerms[3]})
+      for (const double d : {6.0, 10.0})
+        for (const double ratio : {1.25, 2.65})
+          passages.push_back({a, t, cells_for(*a, d), ratio, {}});
+#pragma omp parallel for schedule(dynamic)
+  for (Passage& p : passages) p.row = free_row(*p.array, p.term->term, p.cells, p.ratio);
+  fmt::print(
+      "\n| free bodies, τ 1 | c | D | density | error % | σ % |\n|---|---|---|---|---|---|\n");
+  nlohmann::json list = nlohmann::json::array();
+  for (const Passage& p : passages) {
+    fmt::print("| {}s, {} | {} | {:.1f} | {} | {:+.2f} | {:.2f} |\n", p.array->name(), p.term->term,
+               p.array->fraction, p.row["diameter"].get<double>(), p.ratio,
+               p.row["error_percent"].get<double>(), p.row["sigma_percent"].get<double>());
+    list.push_back(p.row);
+  }
+  return list;
+}
+
 }  // namespace
 
 nlohmann::json array_table() {
-  return {{"rest", table_at_rest()}, {"moving", table_of_moving()}};
+  return {{"rest", table_at_rest()}, {"moving", table_of_moving()}, {"free", table_of_free()}};
 }
 
 }  // namespace lbm

@@ -15,7 +15,8 @@ namespace {
 
 using namespace protocol;
 
-constexpr double kTimeout = 60.0, kRadius = 0.005;
+constexpr double kTimeout = 60.0, kRadius = 0.005, kSites = 64.0;
+constexpr std::int64_t kStride = 104729;  // a prime
 
 /// A fluid rank holds a slab of the unit cube.
 Hello hello(Role role, int rank, int ranks) {
@@ -53,10 +54,16 @@ void solid(Channel& channel, int rank, int ranks, int particles, int intervals) 
   std::vector<State> states(mine);
   std::vector<Shape> shapes(mine);
   double copies = 0.0;
+  const auto sites = static_cast<std::int64_t>(kSites);
   for (int i = 0; i < mine; ++i) {
     const std::int64_t id = rank + static_cast<std::int64_t>(i) * ranks;
-    states[i] = {id, {at(random), at(random), at(random)}, {}, {}};
-    shapes[i] = {id, kRadius, 1.0, 1.0, 1};
+    // places spread over the box, in no order, none in another's: on a grid, a little off its sites
+    const std::int64_t site = id * kStride % (sites * sites * sites);
+    const auto place = [&](std::int64_t index) {
+      return (static_cast<double>(index % sites) + 0.5 + 0.2 * (at(random) - 0.5)) / kSites;
+    };
+    states[i] = {id, {place(site), place(site / sites), place(site / sites / sites)}, {}, {}};
+    shapes[i] = {id, kRadius, 1.0, 0.4 * kRadius * kRadius, 1};
     for (int f = 0; f < ranks; ++f)
       copies += touches(hello(Role::Fluid, f, ranks), states[i].x, kRadius) ? 1.0 : 0.0;
   }

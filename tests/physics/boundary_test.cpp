@@ -64,6 +64,35 @@ TEST(BodyForce, GivesItsMomentumToEveryOperator) {
     }
 }
 
+/// A force that comes up in 40 steps: after n steps the momentum is F Σ factor(s), and what is
+/// shown has half of the coming step's force in it. One step at a time, all at once, and on from a
+/// state.
+TEST(BodyForce, ComesUpInItsRamp) {
+  const InTime ramp{40.0, 0.0};
+  const double force = 1e-5;
+  for (const std::string& collision : known_collisions()) {
+    const auto fluid = [&] {
+      Fluid f({9, 7, Side::Periodic, Side::Periodic},
+              {collision, "none", true, "none", {.tau = 0.6, .force_x = force}});
+      f.ramp_body_force(ramp);
+      return f;
+    };
+    Fluid single = fluid(), whole = fluid(), restored = fluid();
+    double sum = 0.0;
+    for (int n = 1; n <= 60; ++n) {
+      sum += force * ramp.factor(n);
+      single.step();
+      EXPECT_NEAR(single.cell(4, 3).u.x(), sum + 0.5 * force * ramp.factor(n + 1), 1e-14)
+          << collision << ' ' << n;
+      if (n == 23) restored.restore(single.state());
+    }
+    whole.advance(60);
+    restored.advance(37);
+    EXPECT_EQ(whole.cell(4, 3).u.x(), single.cell(4, 3).u.x()) << collision;
+    EXPECT_EQ(restored.cell(4, 3).u.x(), single.cell(4, 3).u.x()) << collision;
+  }
+}
+
 /// Largest error of Stokes' second problem, u = U e^{-ky} cos(wt - ky), in its first two wave
 /// lengths.
 double stokes_error(int cells_per_depth) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/array_references.h"
 #include "tests/support/scheme_fluid.h"
 
 namespace {
@@ -28,7 +29,8 @@ const std::vector<Case> kAll{{"", "resistance"},
 /// Error of the drag on a square array, c = 0.2, n cells a period: see the case cylinder_array.
 double array_error(const Case& c, int n, double tau) {
   const double nu = (tau - 0.5) / 3.0, r = n * std::sqrt(0.2 / std::numbers::pi);
-  const double u = 0.01 * nu / (2.0 * r), drag = 51.526949, g = drag * nu * u / (n * n);
+  const double u = 0.01 * nu / (2.0 * r), drag = test::kDiscDrag.at(0.2),
+               g = drag * nu * u / (n * n);
   Fluid fluid = make(c, {n, n, Side::Periodic, Side::Periodic}, "trt", tau, {g, 0.0});
   const Body disc{1, {0.5 * n + 0.23, 0.5 * n + 0.41}, r, {0.0, 0.0}, 0.0};
   const auto steps = static_cast<int>(0.3 * n * n / nu);  // twenty times the slowest decay

@@ -5,26 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/fluid.h"
+#include "tests/support/array_references.h"
 
 namespace test {
 
 using namespace lbm;
-
-/// Drag of a square array of discs F/(μU) by solid fraction: spectral solution, which agrees with
-/// Sangani and Acrivos 1982 within 0.03 %.
-inline const std::map<double, double> kDiscDrag{{0.05, 15.557822}, {0.1, 24.831675},
-                                                {0.2, 51.526949},  {0.3, 102.881304},
-                                                {0.4, 217.894315}, {0.5, 532.548118}};
-/// Drag of a simple cubic array of spheres F/(6πμaU) [Zick and Homsy 1982].
-inline const std::map<double, double> kSphereDrag{
-    {0.064, 2.810}, {0.125, 4.292}, {0.343, 15.4}, {0.5236, 42.1}};
 
 /// A fluid at rest with TRT and a solid term. @param g  body force on a cell
 inline Fluid slow_fluid(const std::string& term, const Domain& domain, double tau, const Vec3& g) {
@@ -93,13 +84,12 @@ struct Errors {
 };
 inline Errors array_errors(const std::string& term, int dimension, double fraction, int n,
                            double tau) {
-  std::vector<Vec3> offsets{{0.0, 0.0, 0.0}, {0.5, 0.5, 0.0}, {0.23, 0.41, 0.0}};
-  if (dimension == 3) offsets = {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}, {0.13, 0.37, 0.25}};
   Errors errors;
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3& offset : offsets) {
+  for (Vec3 offset : kPlacesInACell) {
+    if (dimension == 2) offset.z() = 0.0;
     const double e = array_error(term, dimension, fraction, n, tau, offset);
-    errors.mean += e / static_cast<double>(offsets.size());
+    errors.mean += e / static_cast<double>(kPlacesInACell.size());
     low = std::min(low, e);
     high = std::max(high, e);
   }

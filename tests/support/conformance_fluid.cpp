@@ -280,8 +280,5 @@ int main(int argc, char** argv) {
     say(name == "fail" || name == "version" || name == "box" ? "ok" : e.what());
     code = leave_after(e, "conformance_fluid", channel.get());
   }
-  channel.reset();
-  disconnect(world);
-  MPI_Finalize();
-  return code;
+  return finish(code, "conformance_fluid", channel, world.local);
 }

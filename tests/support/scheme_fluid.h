@@ -31,7 +31,7 @@ inline Fluid make(const Case& c, const Domain& domain, const std::string& collis
                         .magic = by_resistance(c.term) ? kResistanceMagic : 3.0 / 16.0,
                         .force_x = force.x(),
                         .force_y = force.y()}});
-  if (!c.scheme.empty()) fluid.use(make_scheme(c.scheme, domain, fluid.lattice(), {0.5 * force}));
+  if (!c.scheme.empty()) fluid.use(make_scheme(c.scheme, domain, fluid.lattice()));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;

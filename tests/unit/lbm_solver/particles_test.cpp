@@ -89,6 +89,34 @@ TEST(Particles, AParticleThatLeftAndCameBackHasNoPast) {
   EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);
 }
 
+// Another particle with the same id: no velocity, load or body of the one before, also not after a
+// restart in between.
+TEST(Particles, AnIdOfAnotherEpochStartsAnew) {
+  CouplingScene coupling;
+  coupling.buoyancy = protocol::Buoyancy::None;
+  protocol::Particle other = particle(0.05, 0.0);
+  other.shape.epoch = 7;
+  for (const bool restart : {false, true}) {
+    Particles first(kUnits, scene_of(coupling), kDomain, "layered_holdych"), second = first;
+    first.arrive(std::vector{particle(0.02, 0.0)}, 4e-4);
+    const std::int64_t body = first.bodies(0.0)[0].id;
+    first.add(std::vector<BodyLoad>{{{2.0, 0.0}, {0.0, 0.0, 4.0}}});
+    first.mean_loads(1);
+    if (restart) second.restore(first.memory());
+    Particles& particles = restart ? second : first;
+    particles.arrive(std::vector{other}, 4e-4);
+    EXPECT_NE(particles.bodies(0.0)[0].id, body);
+    EXPECT_EQ(particles.gather().loads[0].force[0], 0.0);
+    particles.add(std::vector<BodyLoad>(1));
+    EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);
+    other.state.v[0] += 0.01;  // the same one now: it has a past
+    particles.arrive(std::vector{other}, 4e-4);
+    particles.add(std::vector<BodyLoad>(1));
+    EXPECT_NEAR(particles.mean_loads(1)[0].force[0], kFluidMass * 0.01 / 4e-4, 1e-12);
+    other.state.v[0] -= 0.01;
+  }
+}
+
 TEST(Particles, VirtualMassLeavesASteadyLoadAsItIs) {
   // Held by another force that balances the load: nothing accelerates, so nothing may change.
   CouplingScene coupling;

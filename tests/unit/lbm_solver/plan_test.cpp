@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -58,17 +61,44 @@ TEST(Plan, WarnsWhereForcesGetNoisyAndWhereCellsAreFew) {
 TEST(Plan, TellsTheErrorToExpectOfTheDrag) {
   Scene s = settling_disc();  // 20 cells a diameter: a fraction of a per cent
   EXPECT_NE(
-      make_plan(s).expected_error.find("drag -0.1 % at a solid fraction of 0.2, -0.7 % at 0.4"),
+      make_plan(s).expected_error.find(
+          "drag -0.1 % at a solid fraction of 0.2, -1.7 % at a solid fraction of 0.5 [slow flow"),
       std::string::npos)
       << make_plan(s).expected_error;
   s.numerics.cells_per_diameter = 5.0;
   const Plan coarse = make_plan(s);
   ASSERT_FALSE(coarse.warnings.empty());
-  EXPECT_NE(coarse.warnings.front().find("7 % off at a solid fraction of 0.4"), std::string::npos)
+  EXPECT_NE(coarse.warnings.front().find("% off at a solid fraction of 0.5"), std::string::npos)
       << coarse.warnings.front();
+  const auto says = [&s](const std::string& words) {
+    const Plan plan = make_plan(s);
+    const std::string text =
+        plan.expected_error + " | " + fmt::format("{}", fmt::join(plan.warnings, " | "));
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+  };
+  s.particles->hydraulic_ratio = {
+      0.5};  // the flow sees 2.5 cells, and packed discs as an array of 0.2
+  says("with 2.5 cells a diameter the drag is more than");
+  s.particles->hydraulic_ratio = {1.0};
+  s.numerics.magic = 0.15;
+  says("not tabulated for trt with layered_resistance");
+  s.numerics.magic.reset();
+  s.numerics.collision = "bgk";
+  s.numerics.solid_term = "holdych";
+  says("not tabulated for bgk with holdych");
   s.numerics.collision = "central_moment";
-  s.numerics.solid_term = "auto";
-  EXPECT_TRUE(make_plan(s).expected_error.empty());  // no table for that
+  s.numerics.solid_term = "auto";  // the table over τ, here 0.6
+  says("drag -9.7 % at a solid fraction of 0.2 [");
+}
+
+TEST(Plan, SaysWhereATableOfErrorsEnds) {
+  Scene s = read_scene({BPLBM_SOURCE_DIR "/cases/cylinder_array/scene.toml"});
+  s.obstacles[0].diameter = 0.9 * s.box.size.x();  // c = 0.64
+  const Plan plan = make_plan(s);
+  EXPECT_NE(plan.expected_error.find("drag more than"), std::string::npos) << plan.expected_error;
+  EXPECT_TRUE(std::ranges::any_of(plan.warnings, [](const std::string& w) {
+    return w.find("more than") != std::string::npos;
+  }));
 }
 
 TEST(Plan, AutoTakesTheOperatorThatSuitsAndSaysWhy) {

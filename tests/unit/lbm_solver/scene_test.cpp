@@ -130,32 +130,44 @@ const std::string kInlet = "[[boundary]]\nside = \"left\"\nkind = \"velocity\"\n
 
 INSTANTIATE_TEST_SUITE_P(
     Places, BadScene,
-    testing::Values(Spoiled{"boundaries_in_each_other",
-                            "[run]",
-                            with(kInlet + "velocity = [0.01, 0]\nto = 0.02\n" + kInlet +
-                                 "velocity = [0.02, 0]\nfrom = 0.019"),
-                            {"the 1. and the 2. lie on the same part of a side"}},
-                    Spoiled{"obstacle_outside",
-                            "[run]",
-                            with("[[obstacle]]\ncentre = [0.025, 0.03]\ndiameter = 0.009"),
-                            {"obstacle: [0.025, 0.03]", "0 … 0.02 m in x"}},
-                    Spoiled{
-                        "boundary_too_fast",
-                        "[run]",
-                        with(kInlet + "velocity = [0.13, 0]"),
-                        {"boundary.velocity makes 0.13 m/s, 0.217 of C", "velocity_scale = 0.13"}},
-                    Spoiled{"start_too_fast",
-                            "[run]",
-                            with("[initial]\nkind = \"uniform\"\nvelocity = [0, 0.2]"),
-                            {"initial.velocity makes 0.2 m/s"}},
-                    Spoiled{"layers_too_fast",
-                            "[run]",
-                            with("[initial]\nkind = \"shear_layer\"\nvelocity = [0.12, 0]"),
-                            {"initial.velocity makes 0.1201 m/s", "0.2 of C"}},
-                    Spoiled{"spin_too_fast",
-                            "[run]",
-                            with("[[obstacle]]\ncentre = [0.01, 0.02]\ndiameter = 0.01\nspin = 30"),
-                            {"spin makes 0.15 m/s"}}),
+    testing::Values(
+        Spoiled{"boundaries_in_each_other",
+                "[run]",
+                with(kInlet + "velocity = [0.01, 0]\nto = 0.02\n" + kInlet +
+                     "velocity = [0.02, 0]\nfrom = 0.019"),
+                {"the 1. and the 2. lie on the same part of a side"}},
+        Spoiled{"obstacle_outside",
+                "[run]",
+                with("[[obstacle]]\ncentre = [0.025, 0.03]\ndiameter = 0.009"),
+                {"obstacle: [0.025, 0.03]", "0 … 0.02 m in x"}},
+        Spoiled{"boundary_too_fast",
+                "[run]",
+                with(kInlet + "velocity = [0.13, 0]"),
+                {"boundary.velocity makes 0.13 m/s, 0.217 of C", "velocity_scale = 0.13"}},
+        Spoiled{"start_too_fast",
+                "[run]",
+                with("[initial]\nkind = \"uniform\"\nvelocity = [0, 0.2]"),
+                {"initial.velocity makes 0.2 m/s"}},
+        Spoiled{"layers_too_fast",
+                "[run]",
+                with("[initial]\nkind = \"shear_layer\"\nvelocity = [0.12, 0]"),
+                {"initial.velocity makes 0.1201 m/s", "0.2 of C"}},
+        Spoiled{"point_outside",
+                "fields_every = 0.05",
+                "fields_every = 0.05\npoints = [[0.01, 0.07]]",
+                {"output.points: [0.01, 0.07]", "0 … 0.06 m in y"}},
+        Spoiled{"start_in_a_ball",
+                "[run]",
+                with("[[obstacle]]\ncentre = [0.01, 0.036]\ndiameter = 0.006"),
+                {"particles.start: [0.01, 0.04]", "lies in the obstacle at [0.01, 0.036]"}},
+        Spoiled{"start_in_a_block",
+                "[run]",
+                with("[[obstacle]]\nfrom = [0, 0.04]\nto = [0.02, 0.05]"),
+                {"particles.start: [0.01, 0.04]", "lies in the obstacle at [0, 0.04]"}},
+        Spoiled{"spin_too_fast",
+                "[run]",
+                with("[[obstacle]]\ncentre = [0.01, 0.02]\ndiameter = 0.01\nspin = 30"),
+                {"spin makes 0.15 m/s"}}),
     [](const auto& info) { return info.param.name; });
 
 /// Warnings of the settling disc with one text in place of another.
@@ -184,6 +196,19 @@ TEST(Scene, WhatWouldRunButNotAsItWasMeantIsWarnedOf) {
   EXPECT_TRUE(has(warnings("end_time = 1.0", "end_time = 1000.0"), "2e+04 frames, 30.7 GB"));
   EXPECT_TRUE(has(warnings("kinematic_viscosity = 1e-5", "kinematic_viscosity = 10.0"), "tar"));
   EXPECT_EQ(warnings("kinematic_viscosity = 1e-5", "kinematic_viscosity = 0.01"), "");
+  EXPECT_TRUE(
+      has(warnings("gravity = [0.0, -9.8]", "gravity = [0.0, 9.8]"), "points upwards (+y)"));
+  EXPECT_TRUE(has(warnings("gravity = [0.0, -9.8]", "gravity = [0.0, -9.8]\nbody_force = [0, 98]"),
+                  "fluid.body_force = 98 m/s² can give 2 m/s, 33 times fluid.velocity_scale"));
+  EXPECT_TRUE(has(warnings("sides_y = \"wall\"", "sides_y = \"periodic\""),
+                  "gravity acts along y, where the box is periodic"));
+  const auto obstacles = [](const std::string& list) { return warnings("[run]", with(list)); };
+  const std::string ball = "[[obstacle]]\ncentre = [0.01, 0.02]\ndiameter = ";
+  EXPECT_TRUE(has(obstacles(ball + "0.0003"), "[0.01, 0.02] is 2.4 cells wide"));
+  EXPECT_EQ(obstacles(ball + "0.001"), "");
+  EXPECT_TRUE(has(obstacles(ball + "0.004\n[[obstacle]]\ncentre = [0.012, 0.02]\ndiameter = 0.004"),
+                  "the 2. obstacle lies partly in the 1."));
+  EXPECT_EQ(obstacles(ball + "0.004\n[[obstacle]]\ncentre = [0.014, 0.02]\ndiameter = 0.004"), "");
 }
 
 Scene settling_disc() {

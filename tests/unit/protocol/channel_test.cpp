@@ -44,6 +44,29 @@ TEST(MemoryChannel, TimesOutWithAName) {
   EXPECT_NO_THROW(test::timeout_part(*link.solid[0]));
 }
 
+TEST(MemoryChannel, AfterAFarewellNothingMoreComes) {
+  MemoryLink link = make_memory_link(1, 2);
+  Channel &fluid = *link.fluid[0], &first = *link.solid[0], &second = *link.solid[1];
+  first.send(0, encode(Goodbye{"the end"}), test::kPatience);
+  first.say_farewell();
+  EXPECT_EQ(decode<Goodbye>(fluid.receive(0, test::kPatience)).reason, "the end");
+  EXPECT_THROW(fluid.receive(0, test::kPatience), PeerLeft);
+  EXPECT_EQ(fluid.await_farewell(0.05).missing, std::vector<int>{1});
+  second.say_farewell();
+  EXPECT_TRUE(fluid.await_farewell(1.0).missing.empty());
+  second.raise({3, "after all"});
+  ASSERT_TRUE(fluid.await_farewell(1.0).fault);
+  EXPECT_EQ(fluid.await_farewell(1.0).fault->exit_code, 3);
+}
+
+TEST(MemoryChannel, OneThatWaitsLearnsOfAFarewell) {
+  MemoryLink link = make_memory_link(1, 1);
+  auto waits =
+      std::async(std::launch::async, [&] { return link.fluid[0]->receive(0, test::kPatience); });
+  link.solid[0]->say_farewell();
+  EXPECT_THROW(waits.get(), PeerLeft);
+}
+
 TEST(TraceChannel, ReplaysTheConversationToEachSideAlone) {
   const test::TemporaryFolder folder;
   const std::string fluid_file = folder.path() + "/fluid.h5",

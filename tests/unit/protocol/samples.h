@@ -25,6 +25,8 @@ inline protocol::Hello sample_hello(protocol::Role role) {
   h.density = protocol::Range{1250.0, 1250.0};
   h.subdomain_lo = h.box_lo;
   h.subdomain_hi = h.box_hi;
+  h.sides.emplace().fill(protocol::SideWall::Whole);
+  h.bodies = {"fix drum mesh/surface"};
   h.variables = {{"x_hi", "0.02"}, {"note", "two words"}};
   return h;
 }
@@ -33,7 +35,11 @@ inline protocol::Hello sample_hello(protocol::Role role) {
 inline protocol::StateBatch sample_states(std::int64_t interval, int count, int first_id = 1) {
   std::mt19937_64 random(static_cast<unsigned>(interval * 1000 + first_id));
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  protocol::StateBatch b{{interval, 2e-4 * static_cast<double>(interval), 0}, {}, {}};
+  protocol::StateBatch b{{interval, 2e-4 * static_cast<double>(interval), 0},
+                         {2e-5, {0.0, 0.0, -0.5}, {0.02, 0.06, 0.5}},
+                         {},
+                         {},
+                         {}};
   for (int i = 0; i < count; ++i) {
     protocol::State s;
     s.id = first_id + i;
@@ -43,7 +49,7 @@ inline protocol::StateBatch sample_states(std::int64_t interval, int count, int 
       s.omega[k] = 1.0 / (1e-3 + unit(random));
     }
     b.states.push_back(s);
-    b.shapes.push_back({s.id, 0.00125, 6.1e-3, 4.8e-9, 1});
+    b.shapes.push_back({s.id, 0.00125, 6.135923e-3, 4.8e-9, 1});
   }
   return b;
 }

@@ -23,7 +23,7 @@ State state(std::int64_t id, double x, double y = 0.03) {
   return s;
 }
 Shape shape(std::int64_t id) {
-  return {id, 0.00125, 6.1e-3, 4.8e-9, 1};
+  return {id, 0.00125, 6.135923e-3, 4.8e-9, 1};
 }
 
 /// Sends states with a shape each.
@@ -130,13 +130,14 @@ TEST(Session, OrderedByIdWhateverTheRanksSend) {
   couple(
       1, 3, [&](FluidSession& f, int) { ids = serve(f); },
       [](SolidSession& s, int r) {
-        const double x = 0.004 * (r + 1);
+        const auto at = [](std::int64_t slot) { return 0.004 * static_cast<double>(slot + 1); };
         for (std::int64_t k = 0; k < 3; ++k) {  // particles migrate: id = (rank + k) mod 3 …
-          const auto reply = send(s, k, {state(10 + (r + k) % 3, x), state(2 - r, x)});
+          const std::int64_t slot = (r + k) % 3;
+          const auto reply = send(s, k, {state(10 + slot, at(slot)), state(2 - r, at(r), 0.05)});
           EXPECT_EQ(reply.loads[0].force[0], static_cast<double>(10 + (r + k) % 3));
           EXPECT_EQ(reply.loads[1].force[0], static_cast<double>(2 - r));
         }
-        send(s, 3, {state(20 - r, x)}, kLast);
+        send(s, 3, {state(20 - r, at(r))}, kLast);
       });
   EXPECT_EQ(ids[0], (std::vector<std::int64_t>{0, 1, 2, 10, 11, 12}));
   EXPECT_EQ(ids[1], ids[0]);
@@ -182,8 +183,8 @@ TEST(Session, LoadsOfSeveralFluidRanksAddUpOnTheOwner) {
           EXPECT_EQ(reply.loads[1].force[0], 200.0);
           EXPECT_EQ(reply.loads[2].force[0], 303.0);
           EXPECT_EQ(reply.loads[2].torque[2], 606.0);
-        } else {  // far outside a box that is not periodic: no fluid, no load
-          EXPECT_EQ(send(s, 0, {state(4, 0.5, 0.5)}).loads[0].force[0], 0.0);
+        } else {  // outside of a box that is not periodic: no fluid, no load
+          EXPECT_EQ(send(s, 0, {state(4, 0.03, 0.08)}).loads[0].force[0], 0.0);
         }
         send(s, 1, {}, kLast);
       });
@@ -315,6 +316,19 @@ TEST(Session, ASilentPartnerIsNamedWithTheIntervalWaitedFor) {
   } catch (const Timeout& e) {
     EXPECT_NE(std::string(e.what()).find("states of interval 0"), std::string::npos) << e.what();
   }
+}
+
+TEST(TimeOut, OfTheSolidIsThatOfTheFluidsScene) {
+  MemoryLink link = make_memory_link(1, 1);
+  Hello hello = test::sample_hello(Role::Fluid);
+  const auto offered = [&](const char* text) {
+    hello.variables = {{"coupling_timeout", text}};
+    const FluidSession fluid(*link.fluid[0], hello, kTimeout);
+    return SolidSession(*link.solid[0], kTimeout).timeout();
+  };
+  EXPECT_EQ(offered("7.5"), 7.5);
+  EXPECT_EQ(offered("soon"), kTimeout);  // an engine goes on with its own
+  EXPECT_EQ(offered("-1"), kTimeout);
 }
 
 }  // namespace

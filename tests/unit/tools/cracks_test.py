@@ -1,4 +1,4 @@
-"""tools/pictures: which broken bonds are one crack, how wide it is, and what the water does there."""
+"""bplbm: which broken bonds are one crack, how wide it is, and what the water does there."""
 
 import pathlib
 import sys
@@ -10,8 +10,8 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from pictures.cracks import BondGraph, openings  # noqa: E402
-from pictures.pores import cavity, connected, pressure_at  # noqa: E402
+from bplbm.cracks import BondGraph, openings  # noqa: E402
+from bplbm.pores import cavity, connected, pressure_at  # noqa: E402
 
 N = 5  # discs a row
 

@@ -7,28 +7,28 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
-import report_stability  # noqa: E402
-from report_hard import BONDS, STEPS, hard_cases  # noqa: E402
-from report_stability import AUTO, RULE  # noqa: E402
+from bplbm.report import stability  # noqa: E402
+from bplbm.report.hard import BONDS, STEPS, hard_cases  # noqa: E402
+from bplbm.report.stability import AUTO, RULE  # noqa: E402
 
 
 class TheDefault(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        report_stability.OUT = pathlib.Path(folder.name)
+        stability.OUT = pathlib.Path(folder.name)
 
     def test_keeps_momentum_energy_and_time_of_bonds_that_break(self):
         cases = [case for case in hard_cases(True) if BONDS in pathlib.Path(case.scene).parents]
         self.assertEqual(len(cases), 2)
         for case in cases:
-            became = report_stability.outcome(case, {"collision": AUTO, "solid_term": AUTO}, True)
+            became = stability.outcome(case, {"collision": AUTO, "solid_term": AUTO}, True)
             self.assertTrue(became["met"], f"{case.name}: {became}")
 
     def test_does_in_single_steps_what_is_asked(self):
-        values = report_stability.step_values({"collision": AUTO, **report_stability.SOLIDS[RULE]}, True)
+        values = stability.step_values({"collision": AUTO, **stability.SOLIDS[RULE]}, True)
         for case in STEPS:
-            became = report_stability.outcome_of_steps(case, values)
+            became = stability.outcome_of_steps(case, values)
             self.assertTrue(became["met"], f"{case.name}: {became}")
 
 

@@ -1,4 +1,4 @@
-"""tools/launch.py judges results and maps exit codes; no program is started."""
+"""tools/run judges results and maps exit codes; no program is started."""
 
 import contextlib
 import io
@@ -12,10 +12,9 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-import launch  # noqa: E402
-import output_folder  # noqa: E402
-import solid_alone  # noqa: E402
-from pictures import result  # noqa: E402
+from bplbm import output_folder, result, run, solid_alone  # noqa: E402
+from bplbm.options import arguments, scene_files  # noqa: E402
+from bplbm.scenes import find, scenes  # noqa: E402
 
 
 class Result(unittest.TestCase):
@@ -42,11 +41,11 @@ class Launch(unittest.TestCase):
                 return job_code
 
             text = io.StringIO()
-            with mock.patch.object(launch, "run_job", job), mock.patch.object(launch, "draw"), \
+            with mock.patch.object(run, "run_job", job), mock.patch.object(run, "draw"), \
                     mock.patch.object(sys, "argv", ["run", *arguments, "--out", folder]), \
                     contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
                 try:
-                    return launch.main(), text.getvalue()
+                    return run.main(), text.getvalue()
                 except SystemExit as end:
                     return end.code, text.getvalue()
 
@@ -57,6 +56,25 @@ class Launch(unittest.TestCase):
         code, text = self.run_main("settling_disc", "--no-study", value=1.2)
         self.assertEqual(code, 4)
         self.assertIn("MISS", text)
+
+    def test_results_and_quantities_are_printed_with_their_units_and_without_colour_in_a_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out, text = pathlib.Path(folder), io.StringIO()
+            (out / "summary.json").write_text(json.dumps({
+                "results": [result("drag", 1.01, "1", 1.0, "test", 0.03), result("speed", 2.0, "m/s", 1.0, "test", 0.03)],
+                "quantities": [{"name": "grains gone", "value": 3.0, "unit": "1"}]}))
+            with contextlib.redirect_stdout(text):
+                self.assertFalse(run.judge(out))
+        self.assertEqual(text.getvalue(), "run | pass | drag = 1.01, reference 1 (test), error +1.00 %, tolerance 3 %\n"
+                         "run | MISS | speed = 2 m/s, reference 1 m/s (test), error +100.00 %, tolerance 3 %\n"
+                         "run | told | grains gone = 3\n")
+
+    def test_a_terminal_has_colour_unless_it_wants_none(self):
+        for environment, expected in (({"TERM": "xterm"}, "\033[32mpass\033[0m"), ({"TERM": "xterm", "NO_COLOR": "1"}, "pass"),
+                                      ({"TERM": "dumb"}, "pass")):
+            with mock.patch.object(sys.stdout, "isatty", lambda: True, create=True), \
+                    mock.patch.dict("os.environ", environment, clear=True):
+                self.assertEqual(run.colored("pass", 32), expected)
 
     def test_the_codes_of_the_programs_pass_through(self):
         for job_code in (1, 2, 3):
@@ -71,8 +89,8 @@ class Launch(unittest.TestCase):
             self.assertIn(expected, text)
 
     def test_own_choices_become_overlays(self):
-        args = launch.arguments(["disc_migration", "--start", "6", "--initial", "rest"])
-        self.assertEqual([pathlib.Path(f).name for f in launch.scene_files(args)],
+        args = arguments(["disc_migration", "--start", "6", "--initial", "rest"])
+        self.assertEqual([pathlib.Path(f).name for f in scene_files(args)],
                          ["scene.toml", "start-6.toml", "initial-rest.toml"])
         for words, expected in ((["--start", "4"], "5, 6, 7, 8, 9, all"), (["--end", "4"], "knows no '--end'")):
             code, text = self.run_main("disc_migration", *words)
@@ -80,14 +98,14 @@ class Launch(unittest.TestCase):
             self.assertIn(expected, text)
 
     def test_all_values_of_a_choice_are_the_run_and_its_comparisons(self):
-        args = launch.arguments(["disc_migration", "--start", "all"])
-        self.assertEqual(launch.comparison_runs(args), [["--start", v] for v in "6789"])
+        args = arguments(["disc_migration", "--start", "all"])
+        self.assertEqual(run.comparison_runs(args), [["--start", v] for v in "6789"])
         self.assertEqual(args.own, [("start", "5")])
 
     def test_the_command_names_both_programs_by_absolute_path(self):
-        args = mock.Mock(scene="settling_disc", set="fine", variant="d10", own=[], engine="liggghts", threads=2, until=None,
+        args = mock.Mock(scene=find("settling_disc"), overlay=[], set="fine", variant="d10", own=[], engine="liggghts", threads=2, until=None,
                          record=None, restart=False, fluid_ranks=1, solid_ranks=3)
-        line = launch.command(args, pathlib.Path("/somewhere"))
+        line = run.command(args, pathlib.Path("/somewhere"))
         split = line.index(":")
         self.assertTrue(line[line.index("1") + 1].endswith("/bin/lbm"))
         self.assertTrue(line[split + 3].startswith("/") and line[split + 3].endswith("/bin/liggghts"))
@@ -108,7 +126,7 @@ class SolidAlone(unittest.TestCase):
         return solid_alone.merged(self.SCENE, tables)
 
     def test_only_a_scene_without_a_fluid_is_one(self):
-        alone = {scene for scene in launch.scenes() if solid_alone.is_alone(launch.CASES / scene / "scene.toml")}
+        alone = {name for name in scenes() if find(name).is_solid_alone}
         self.assertEqual(alone, {"bonded_compression"})
 
     def test_the_script_gets_what_the_fluid_offers_to_others(self):

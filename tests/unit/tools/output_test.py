@@ -17,9 +17,8 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-import launch  # noqa: E402
-import output_folder  # noqa: E402
-from output_folder import Refused  # noqa: E402
+from bplbm import output_folder, run, scenes  # noqa: E402
+from bplbm.output_folder import Refused  # noqa: E402
 
 
 class InFolder(unittest.TestCase):
@@ -112,7 +111,7 @@ class Command(InFolder):
         with mock.patch.object(sys, "argv", ["run", *words]), contextlib.redirect_stdout(text), \
                 contextlib.redirect_stderr(text):
             try:
-                return launch.main(), text.getvalue()
+                return run.main(), text.getvalue()
             except SystemExit as end:
                 return end.code, text.getvalue()
 
@@ -138,7 +137,7 @@ class Command(InFolder):
                 (self.folder / name / "README.md").write_text(heading)
         (self.folder / "broken").mkdir()
         (self.folder / "broken" / "scene.toml").write_text("[box")
-        with mock.patch.object(launch, "CASES", self.folder):
+        with mock.patch.object(scenes, "CASES", self.folder):
             code, text = self.main("--list")
         self.assertEqual(code, 0)
         for words in ("bare                 the title (no README.md)", "empty                the title", "full                 A full",
@@ -151,9 +150,8 @@ class Command(InFolder):
         self.write("summary.json", json.dumps({"physical_seconds": 0.01, "results": []}))
         for until, words in ((True, "--until has cut short"), (False, "correct it")):
             text = io.StringIO()
-            with mock.patch.object(launch, "CASES", self.folder), contextlib.redirect_stderr(text), \
-                    self.assertRaises(SystemExit) as end:
-                launch.draw("scene", self.out, until)
+            with contextlib.redirect_stderr(text), self.assertRaises(SystemExit) as end:
+                run.draw(scenes.Scene(self.folder / "scene"), self.out, until)
             self.assertEqual(end.exception.code, 1)
             self.assertEqual(text.getvalue().count("\n"), 1)
             self.assertNotIn("Traceback", text.getvalue())
@@ -162,7 +160,7 @@ class Command(InFolder):
         self.assertIn("Traceback", (self.out / "plot.log").read_text())
 
     def test_draw_setup_refuses_three_dimensions(self):
-        job = subprocess.run([sys.executable, ROOT / "tools" / "draw_setup.py", "ten_cate_sphere"], capture_output=True,
+        job = subprocess.run([ROOT / "tools" / "draw_setup", "ten_cate_sphere"], capture_output=True,
                              text=True, timeout=30, check=False)
         self.assertEqual(job.returncode, 2)
         self.assertIn("three dimensions is not drawn", job.stderr)
@@ -190,7 +188,7 @@ sys.exit(child.wait())
     def start(self, kind):
         (self.folder / "lbm.py").write_text(self.LBM)
         (self.folder / "mpirun.py").write_text(self.MPIRUN)
-        code = (f"import sys; sys.path.insert(0, {str(ROOT / 'tools')!r})\nfrom mpi_job import MpiJob\nimport os\n"
+        code = (f"import sys; sys.path.insert(0, {str(ROOT / 'tools')!r})\nfrom bplbm.mpi_job import MpiJob\nimport os\n"
                 f"job = MpiJob([sys.executable, 'mpirun.py', {kind!r}], dict(os.environ))\n"
                 "code = job.run()\nprint('ended', code, job.stopped)")
         job = subprocess.Popen([sys.executable, "-c", code], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

@@ -15,8 +15,8 @@ BOX = ["--box", "0", "0.06", "0", "0.03", "--diameter", "0.002", "0.004"]
 
 
 def make(folder, *more):
-    return subprocess.run([sys.executable, ROOT / "tools" / "packing.py", "--out", "p", *BOX, *more],
-                          cwd=folder, capture_output=True, text=True, check=False, timeout=100)
+    return subprocess.run([sys.executable, "-m", "bplbm.packing", "--out", "p", *BOX, *more],
+                          env={**os.environ, "PYTHONPATH": str(ROOT / "tools")}, cwd=folder, capture_output=True, text=True, check=False, timeout=100)
 
 
 def largest_overlap(discs, periodic):

@@ -16,6 +16,7 @@
 #include <update.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
@@ -48,18 +49,21 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     }
   nevery = 1;
   create_attribute = 1;
+  restart_peratom = 1;
   grow_arrays(atom->nmax);
-  atom->add_callback(LAMMPS_NS::Atom::GROW);  // held loads follow their particles
+  atom->add_callback(LAMMPS_NS::Atom::GROW);     // held loads follow their particles
+  atom->add_callback(LAMMPS_NS::Atom::RESTART);  // epochs go into restart files
   for (int i = 0; i < atom->nlocal; ++i) set_arrays(i);
 }
 
 FixLbmCouple::~FixLbmCouple() {
   atom->delete_callback(id, LAMMPS_NS::Atom::GROW);
+  atom->delete_callback(id, LAMMPS_NS::Atom::RESTART);
   memory->destroy(held_);
 }
 
 int FixLbmCouple::setmask() {
-  return POST_FORCE | END_OF_STEP;
+  return PRE_EXCHANGE | POST_FORCE | END_OF_STEP;
 }
 
 void FixLbmCouple::init() {
@@ -70,6 +74,39 @@ void FixLbmCouple::init() {
     const std::string style = modify->fix[i]->style;
     if (style == "freeze" || style == "setforce") held_still_ |= modify->fix[i]->groupbit;
   }
+}
+
+std::vector<protocol::Ball> FixLbmCouple::balls(int group) const {
+  std::vector<protocol::Ball> balls;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double* x = atom->x[i];
+    const bool usable = std::isfinite(x[0] + x[1] + x[2]) && atom->radius[i] > 0.0;
+    if ((atom->mask[i] & group) && usable)
+      balls.push_back({atom->tag[i], {x[0], x[1], x[2]}, atom->radius[i]});
+  }
+  return balls;
+}
+
+/// Before LAMMPS looks for neighbours: what the fluid would refuse, with the fix that does it.
+void FixLbmCouple::setup_pre_exchange() {
+  if (settling_again_) return;
+  const protocol::Hello box = hello();
+  for (int i = 0; i < modify->nfix; ++i) {
+    const LAMMPS_NS::Fix& fix = *modify->fix[i];
+    if (!std::string(fix.style).starts_with("rigid")) continue;
+    if (const auto pair = find_overlap(balls(fix.groupbit), box, protocol::Depth::Surface))
+      throw protocol::ProtocolError(
+          std::string("fix ") + fix.id + " " + fix.style +
+              " joins spheres that overlap: " + describe(*pair) +
+              ". Such clumps cannot couple yet: the fluid would count buoyancy and the fluid "
+              "inside once a sphere. Use spheres that do not overlap",
+          protocol::kBadInput);
+  }
+  if (const auto pair = find_overlap(balls(groupbit), box))
+    throw protocol::ProtocolError(describe(*pair) +
+                                      "; the centre of one lies in the other: "
+                                      "correct their places or diameters",
+                                  protocol::kBadInput);
 }
 
 protocol::Hello FixLbmCouple::hello() const {
@@ -158,13 +195,20 @@ void FixLbmCouple::exchange(bool add_change) {
     const double *x = atom->x[i], *v = atom->v[i], *w = atom->omega[i];
     const double r = atom->radius[i], m = atom->rmass[i];
     states.push_back({atom->tag[i], {x[0], x[1], x[2]}, {v[0], v[1], v[2]}, {w[0], w[1], w[2]}});
-    shapes.push_back({atom->tag[i], r, m, factor * m * r * r, atom->type[i]});
+    if (held_[i][kId] != static_cast<double>(atom->tag[i])) {  // the id has come to this particle
+      held_[i][kId] = static_cast<double>(atom->tag[i]);
+      held_[i][kEpoch] = static_cast<double>(interval_);
+    }
+    shapes.push_back({atom->tag[i], r, m, factor * m * r * r, atom->type[i],
+                      static_cast<std::int64_t>(held_[i][kEpoch])});
     local.push_back(i);
   }
   Coupling& coupling = Coupling::instance();
   const double time = static_cast<double>(interval_) * update->dt * substeps_;
   const std::uint32_t flags =
       (stop_asked_ ? protocol::kLast : 0U) | (settling_again_ ? protocol::kCheckpoint : 0U);
+  const auto corner = [](const double* x) { return protocol::Vec3{x[0], x[1], x[2]}; };
+  coupling.session->set({update->dt, corner(domain->boxlo), corner(domain->boxhi)});
   const auto reply = coupling.session->exchange({interval_, time, flags}, states, shapes);
   coupling.over = stop_asked_;
   if (coupling.over) return;
@@ -232,21 +276,33 @@ void FixLbmCouple::write_part() {
 }
 
 void FixLbmCouple::grow_arrays(int n) {
-  memory->grow(held_, n, kValues, "lbm/couple:held");
+  memory->grow(held_, n, kColumns, "lbm/couple:held");
 }
 void FixLbmCouple::copy_arrays(int from, int to, int) {
-  std::copy_n(held_[from], kValues, held_[to]);
+  std::copy_n(held_[from], kColumns, held_[to]);
 }
 void FixLbmCouple::set_arrays(int i) {
-  std::fill_n(held_[i], kValues, 0.0);
+  std::fill_n(held_[i], kColumns, 0.0);
 }
 int FixLbmCouple::pack_exchange(int i, double* buffer) {
-  std::copy_n(held_[i], kValues, buffer);
-  return kValues;
+  std::copy_n(held_[i], kColumns, buffer);
+  return kColumns;
 }
 int FixLbmCouple::unpack_exchange(int i, double* buffer) {
-  std::copy_n(buffer, kValues, held_[i]);
-  return kValues;
+  std::copy_n(buffer, kColumns, held_[i]);
+  return kColumns;
+}
+
+int FixLbmCouple::pack_restart(int i, double* buffer) {
+  buffer[0] = kColumns - kId + 1;  // LAMMPS' convention: a fix's record begins with its length
+  std::copy(held_[i] + kId, held_[i] + kColumns, buffer + 1);
+  return kColumns - kId + 1;
+}
+void FixLbmCouple::unpack_restart(int i, int nth) {
+  const double* record = atom->extra[i];
+  for (int n = 0; n < nth; ++n) record += static_cast<int>(record[0]);
+  set_arrays(i);
+  std::copy_n(record + 1, kColumns - kId, held_[i] + kId);
 }
 
 }  // namespace engine

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/overlap.h"
 #include "protocol/session.h"
 #include "protocol/solid_parts.h"
 
@@ -34,6 +35,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
 
   int setmask() override;
   void init() override;
+  void setup_pre_exchange() override;
   void setup(int vflag) override;
   void post_force(int vflag) override;
   void end_of_step() override;
@@ -43,9 +45,15 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void set_arrays(int i) override;
   int pack_exchange(int i, double* buffer) override;
   int unpack_exchange(int i, double* buffer) override;
+  int pack_restart(int i, double* buffer) override;
+  void unpack_restart(int i, int nth) override;
+  int size_restart(int) override { return kColumns - kId + 1; }
+  int maxsize_restart() override { return kColumns - kId + 1; }
 
  private:
-  static constexpr int kValues = 6;  ///< force, torque
+  /// Of a particle: force and torque; the id and epoch that the fluid was told last.
+  static constexpr int kId = 6, kEpoch = 7, kColumns = 8;
+  std::vector<protocol::Ball> balls(int group) const;
   protocol::Hello hello() const;
   void exchange(bool add_change);
   void settle_again();
@@ -53,7 +61,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
 
   int substeps_ = 0;
   protocol::Vec3 gravity_{};  ///< [m/s²]
-  double** held_ = nullptr;   ///< [nmax][6] force [N] and torque [N m] of the current interval
+  double** held_ = nullptr;   ///< [nmax][kColumns] force [N], torque [N m] of this interval, …
   int held_still_ = 0;        ///< groups whose forces fix freeze or setforce sets
   LAMMPS_NS::bigint first_step_ = 0;
   std::int64_t interval_ = 0;

@@ -14,8 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "protocol/mpi_calls.h"
 #include "protocol/mpi_channel.h"
 #include "protocol/program.h"
+#include "protocol/watch.h"
 
 namespace {
 
@@ -28,7 +30,6 @@ LAMMPS_NS::Fix* make_fix(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg) {
 
 std::unique_ptr<protocol::Channel> channel;
 std::string log_file = "log.lammps";
-bool finalize_is_meant = false;
 
 void run(std::vector<std::string> arguments, protocol::SolidSession& session, MPI_Comm local) {
   Coupling::instance().session = &session;
@@ -66,8 +67,10 @@ void run(std::vector<std::string> arguments, protocol::SolidSession& session, MP
       channel.get(), lonely);
 }
 extern "C" int MPI_Finalize() {
-  if (!finalize_is_meant) end_with_error(/*lonely=*/false);
-  return PMPI_Finalize();
+  int over = 0;
+  PMPI_Finalized(&over);
+  if (!over) end_with_error(/*lonely=*/false);
+  return MPI_SUCCESS;
 }
 extern "C" int MPI_Abort(MPI_Comm, int) {
   end_with_error(/*lonely=*/true);
@@ -88,13 +91,11 @@ int main(int argc, char** argv) {
           protocol::kBadInput);
     channel = protocol::make_mpi_channel(world, protocol::Role::Solid);
     protocol::SolidSession session(*channel, 60.0);
+    protocol::limit_waits(session.timeout());
+    protocol::replace_world(world.local);  // to LAMMPS it is its own
     run(arguments, session, world.local);
   } catch (const std::exception& error) {
     code = protocol::leave_after(error, "lammps_engine", channel.get());
   }
-  channel.reset();
-  protocol::disconnect(world);
-  finalize_is_meant = true;
-  MPI_Finalize();
-  return code;
+  return protocol::finish(code, "lammps_engine", channel, world.local);
 }

@@ -8,10 +8,10 @@ Copy it, and put your own particles in place of these. Everything comes from the
 
 import math
 
-import bplbm
+import wire
 import numpy as np
 
-with bplbm.Solid("engine.py") as fluid:
+with wire.Solid("engine.py") as fluid:
     lo, hi, gravity = fluid.vector("{}_lo"), fluid.vector("{}_hi"), fluid.number("gravity") * fluid.vector("gravity_{}")
     periodic = np.array([fluid.text(f"boundary_{a}") == "p" for a in "xy"] + [True])
     walls = [fluid.number(f"walls_{a}") != 0 for a in "xy"]
@@ -26,7 +26,7 @@ with bplbm.Solid("engine.py") as fluid:
         while f"particle{i}_x" in fluid.variables:
             if fluid.number(f"particle{i}_interval", 0) == fluid.interval:
                 place, speed = fluid.vector(f"particle{i}_{{}}"), fluid.vector(f"particle{i}_v{{}}")
-                discs = np.append(discs, np.array([(i, place, speed, np.zeros(3))], bplbm.STATE))
+                discs = np.append(discs, np.array([(i, place, speed, np.zeros(3))], wire.STATE))
             i += 1
         return discs
 
@@ -45,9 +45,10 @@ with bplbm.Solid("engine.py") as fluid:
             f[i] += (push(2 * r - distance, -np.sum((v[i] - v) * n, axis=1) / distance) / distance) @ n
         return f
 
-    discs = fluid.restart() if fluid.interval else inserted(np.empty(0, bplbm.STATE))
-    fluid.agree(lo, hi, periodic, gravity, dt, substeps, len(discs))
-    shapes = lambda: np.array([(i, r, m, m * r**2 / 2, 1) for i in discs["id"]], bplbm.SHAPE)  # noqa: E731
+    discs = fluid.restart() if fluid.interval else inserted(np.empty(0, wire.STATE))
+    sides = [wall for axis in (*walls, False) for wall in (axis, axis)]
+    fluid.agree(lo, hi, periodic, gravity, dt, substeps, len(discs), walls=sides)
+    shapes = lambda: np.array([wire.ball(i, r, m, m * r**2 / 2) for i in discs["id"]], wire.SHAPE)  # noqa: E731
     while (loads := fluid.exchange(discs, shapes())) is not None:
         x, v = discs["x"], discs["v"]
         f = forces(x, v, loads["force"])

@@ -18,6 +18,7 @@
 #include "protocol/program.h"
 #include "protocol/session.h"
 #include "protocol/solid_parts.h"
+#include "protocol/watch.h"
 
 namespace {
 
@@ -99,7 +100,7 @@ class Discs {
 
   /// A checkpoint is a frame of states, as it would go to the fluid.
   Bytes checkpoint(const StepHeader& head) const {
-    return encode(StateBatch{head, states, shapes, {}});
+    return encode(StateBatch{head, {}, states, shapes, {}});
   }
   /// Every path of the discs is decided by places and velocities: a restart goes on to the bit.
   void read(const std::string& file) {
@@ -200,6 +201,7 @@ class Discs {
 
 void run(Channel& channel) {
   SolidSession session(channel, 60.0);
+  limit_waits(session.timeout());
   const Hello& fluid = session.fluid();
   const Offer offer(fluid);
   Discs discs(fluid, offer);
@@ -219,6 +221,9 @@ void run(Channel& channel) {
   hello.particles = static_cast<std::int64_t>(discs.states.size());
   hello.first_interval = fluid.first_interval;
   hello.features = kCheckpoints;
+  hello.sides.emplace();
+  for (int k = 0; k < 2; ++k)
+    if (discs.box().walls[k]) (*hello.sides)[2 * k] = (*hello.sides)[2 * k + 1] = SideWall::Whole;
   session.agree(hello);
   SolidParts parts = SolidParts::of(fluid);
   StepHeader head{fluid.first_interval, 0.0, kContinue};
@@ -253,8 +258,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     code = leave_after(error, "reference_engine", channel.get());
   }
-  channel.reset();
-  disconnect(world);
-  MPI_Finalize();
-  return code;
+  return finish(code, "reference_engine", channel, world.local);
 }

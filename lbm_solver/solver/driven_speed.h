@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lbm_solver/base/scene.h"
+
+namespace lbm {
+
+/// Something in a scene that sets the fluid or the particles in motion, and the speed that it can
+/// give: the smaller of what viscosity and what inertia allow, so right in its order of magnitude.
+struct Drive {
+  double speed;      ///< [m/s]
+  std::string what;  ///< with its value, "fluid.body_force = 0.5 m/s²"
+};
+
+/// Velocities of boundaries, obstacles and the initial state, body force, pressure differences, and
+/// the weight of the particles in the fluid. The fastest first; empty where nothing drives.
+std::vector<Drive> drives(const Scene& scene);
+
+}  // namespace lbm

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// What a run that gets too fast says of the cause.
+#include "lbm_solver/coupling/diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lbm_solver/io/scene_reader.h"
+#include "tests/unit/lbm_solver/scene_files.h"
+
+namespace {
+
+using namespace lbm;
+
+/// The settling disc with one text in place of another, and what is said of two discs in it.
+struct Situation {
+  std::string from = "[run]", to = "[run]";
+  std::vector<double> speeds{0.1, 0.11};  ///< of two looks, 50 steps apart
+  std::optional<Vec3> at = Vec3(0.01, 0.03, 0.0);
+  std::vector<std::array<double, 2>> discs;
+};
+
+std::string said(const Situation& now) {
+  const test::TemporaryFolder folder;
+  const Scene scene = read_scene(
+      {folder.write("scene.toml", test::replaced(test::good_scene(), now.from, now.to))});
+  SpeedRecord record;
+  for (std::size_t i = 0; i < now.speeds.size(); ++i)
+    record.add(50 * static_cast<std::int64_t>(i + 1), now.speeds[i]);
+  std::vector<protocol::Particle> particles;
+  for (const auto& [x, y] : now.discs) {
+    protocol::Particle p{};
+    p.state.id = static_cast<std::int64_t>(particles.size() + 1);
+    p.state.x = {x, y, 0.0};
+    p.state.v = {0.0, 0.01 * static_cast<double>(particles.size()), 0.0};
+    p.shape.radius = 1.25e-3;
+    particles.push_back(p);
+  }
+  return diagnosis(scene, make_plan(scene), now.at, record, particles);
+}
+
+void expect_says(const Situation& now, const std::vector<std::string>& words) {
+  const std::string text = said(now);
+  for (const std::string& word : words)
+    EXPECT_NE(text.find(word), std::string::npos) << word << "\n" << text;
+}
+
+TEST(Diagnosis, OfDiscsThatOverlap) {
+  expect_says({.at = Vec3(0.01, 0.0315, 0.0), .discs = {{0.01, 0.03}, {0.0101, 0.0281}}},
+              {"The nearest particle is 1, 0.2 radii from there", "It overlaps particle 2 by 0.478",
+               "start particles apart"});
+  expect_says({.at = std::nullopt, .discs = {{0.01, 0.03}, {0.0101, 0.0281}}},
+              {"It is particle 2.", "overlaps particle 1"});
+}
+
+TEST(Diagnosis, OfADriveThatIsTooStrong) {
+  expect_says({.from = "gravity = [0.0, -9.8]", .to = "body_force = [0.0, 50.0]"},
+              {"fluid.body_force = 50 m/s² can give 1.41 m/s", "its value and unit"});
+}
+
+TEST(Diagnosis, OfAnInstability) {
+  const std::vector<std::string> words{"factor 1.1 a step, which is an instability or a blow",
+                                       "τ = ", "density of the particles over the fluid's 1.25"};
+  expect_says({.speeds = {0.001, 0.1}, .discs = {{0.01, 0.031}}}, words);
+  expect_says({.speeds = {0.001, std::numeric_limits<double>::infinity()}},
+              {"factor 1.58 a step", "more cells"});
+  EXPECT_EQ(said({.discs = {{0.01, 0.031}}}).find("instability"), std::string::npos);
+}
+
+TEST(Diagnosis, OfAFlowThatIsFasterThanItWasSaidToBe) {
+  expect_says({}, {"it grew by a factor 1 a step.", "What drives most is fluid.gravity = 9.8 m/s²",
+                   "if this flow is right, set fluid.velocity_scale"});
+  expect_says({.speeds = {}}, {" What drives most"});
+}
+
+}  // namespace

@@ -1,0 +1,240 @@
+"""The page of a run: made from an output folder alone, in two and three dimensions, and self-contained. No program is
+started."""
+
+import contextlib
+import io
+import json
+import pathlib
+import re
+import sys
+import tempfile
+import time
+import unittest
+import zlib
+from unittest import mock
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tools"))
+
+import h5py  # noqa: E402
+import numpy as np  # noqa: E402
+from bplbm import result, run as launcher  # noqa: E402
+from bplbm.page import flow, histories, picture  # noqa: E402
+from bplbm.page.run import write_page  # noqa: E402
+from bplbm.quantities import of_particles  # noqa: E402
+from bplbm.results import Run  # noqa: E402
+from bplbm.scenes import Scene  # noqa: E402
+
+SCENE_2D = """title = "<sand>"
+[box]
+size = [0.04, 0.02]
+sides_x = "periodic"
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-6
+gravity = [0.0, -9.81]
+[[boundary]]
+side = "top"
+kind = "pressure"
+from = 0.01
+to = 0.03
+[[obstacle]]
+centre = [0.03, 0.01]
+diameter = 0.004
+[particles]
+diameter = 0.002
+density = 2500.0
+"""
+SCENE_3D = """title = "sand"
+[box]
+size = [0.04, 0.01, 0.02]
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-6
+[[boundary]]
+side = "left"
+kind = "velocity"
+velocity = [0.1, 0.0, 0.0]
+from = [0.0, 0.01]
+to = [0.01, 0.02]
+[[boundary]]
+side = "bottom"
+kind = "pressure"
+[particles]
+diameter = 0.002
+density = 2500.0
+"""
+
+
+def decoded(data):
+    """Indices of a PNG that picture.png has made: [row][column], the first row on top."""
+    width, height = (int.from_bytes(data[at:at + 4]) for at in (16, 20))
+    start = data.index(b"IDAT") + 4
+    return np.frombuffer(zlib.decompress(data[start:data.index(b"IEND") - 8]), np.uint8).reshape(height, width + 1)[:, 1:]
+
+
+class Output(unittest.TestCase):
+    """An output folder as lbm writes one: 40 × (10 ×) 20 cells of 1 mm, two particles, one broken bond."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.out = self.folder / "out"
+        self.out.mkdir()
+        (self.folder / "sand").mkdir()
+        self.scene = Scene(self.folder / "sand")
+
+    def write(self, dimensions, frames=4):
+        self.scene.file.write_text(SCENE_2D if dimensions == 2 else SCENE_3D)
+        size = [0.04, 0.02] if dimensions == 2 else [0.04, 0.01, 0.02]
+        box = {f"box_{axis}": length for axis, length in zip("xyz", size)}  # noqa: B905
+        (self.out / "summary.json").write_text(json.dumps({
+            "scene": "sand", "set": "resolved", "variant": "", "versions": {"lbm": "1"}, "ending": "complete", "cells": 800,
+            "steps": 100, "substeps": 5, "physical_seconds": 0.1, "wall_seconds": 2.0, "cpu_seconds": 1.5, "mlups": 1.0,
+            "time_share": {"sweep": 0.75, "waiting": 0.25}, "megabytes": {"populations": 1.0}, "waiting": 0.5, "ma_max": 0.1,
+            "mass_drift": 0.0, "results": [result("height & rest", 1.2, "m", 1.0, "a <source>", 0.1)], "quantities": [],
+            "parameters": {**box, "cell": 1e-3, "interval": 1e-3}}))
+        (self.out / "lbm.log").write_text("scene  sand\nnumbers  Re 7\n\n  0 | warning | <too fast>\nhint   more cores\n")
+        (self.out / "liggghts.log").write_text("WARNING: a wall <moves>\n    700  2\nLoop time of 1.0 on 1 procs for 500 steps\n" + "".join(
+            f"{key} time (%) = {s} (1)\n" for key, s in (("Pair", 0.5), ("Neigh", 0.1), ("Comm", 0.1), ("Outpt", 0.1), ("Other", 0.2))))
+        (self.out / "breaks.csv").write_text("step,time,id1,id2,mode,force\n300,0.06,1,2,1,5\n")
+        head = "time,id,x,y,vx,vy,omega,fx,fy,torque" if dimensions == 2 else "time,id,x,y,z,vx,vy,vz,wx,wy,wz,fx,fy,fz,tx,ty,tz"
+        rows = [",".join([f"{0.01 * k}", str(i), *["0.005"] * dimensions, *["0.1"] * (len(head.split(",")) - 2 - dimensions)])
+                for k in range(11) for i in (1, 2)]
+        (self.out / "probes.csv").write_text("\n".join([head, *rows]) + "\n")
+        shape = (20, 40) if dimensions == 2 else (20, 10, 40)
+        with h5py.File(self.out / "fields.h5", "w") as file:
+            file.attrs["cell"] = 1e-3
+            for k in range(frames):
+                group = file.create_group(f"frame{k:06}")
+                group.attrs["time"] = 0.1 * k / max(1, frames - 1)
+                velocity = np.zeros((*shape, 3), np.float32)
+                velocity[..., 0] = np.arange(40) * 1e-3 * k
+                group["velocity"] = velocity
+                pressure = np.full(shape, 5.0, np.float32)
+                pressure[0] = np.nan
+                group["pressure"] = pressure
+                place = [[0.005, 0.005], [0.007, 0.005]] if dimensions == 2 else [[0.005, 0.005, 0.005], [0.007, 0.0095, 0.005]]
+                rest = [0.001, 0, 0, 0, 1] if dimensions == 2 else [0.001, 0, 0, 0, 0, 0, 0, 1]
+                group["particles"] = np.array([[i + 1, *p, *rest] for i, p in enumerate(place)], float)
+                if dimensions == 2:
+                    group["bond_ends"], group["bond_state"] = np.array(place, float), np.array([1.0])
+        return Run(self.out)
+
+    def page(self):
+        return write_page(self.out, self.scene, [self.scene.file], ["sand", "--out", "o u t"], ["mpirun", "lbm"]).read_text()
+
+
+class Page(Output):
+    def test_has_all_parts_in_two_and_three_dimensions(self):
+        for dimensions in (2, 3):
+            self.write(dimensions)
+            text = self.page()
+            for part in ("Results", "Set-up", "Flow", "Histories", "Where the time went", "What was on", "Warnings", "How to repeat it",
+                         "height &amp; rest", ">miss<", "a &lt;source&gt;", "&lt;too fast&gt;", "a wall &lt;moves&gt;", "more cores",
+                         "broken bonds", "tools/run sand --out &#x27;o u t&#x27;", "stream and collide 75 %", "contacts 50 %"):
+                self.assertIn(part, text, dimensions)
+            self.assertNotRegex(text, r"""(src|href)=["']?(https?:|//|[\w./]+\.(js|css))""")
+            self.assertNotIn("<too fast>", text)
+            self.assertNotIn(">nan<", text)
+
+    def test_needs_neither_fields_nor_particles(self):
+        self.write(2)
+        for name in ("fields.h5", "probes.csv", "breaks.csv", "liggghts.log", "lbm.log"):
+            (self.out / name).unlink()
+        text = self.page()
+        self.assertIn("Where the time went", text)
+        self.assertNotIn("<h2>Flow</h2>", text)
+
+    def test_tables_of_a_head_alone_are_no_fault(self):
+        self.write(2)
+        for name in ("probes", "breaks"):
+            path = self.out / f"{name}.csv"
+            path.write_text(path.read_text().splitlines()[0] + "\n")
+        self.assertIn("broken bonds", self.page())
+
+    def test_holds_what_plot_has_drawn(self):
+        self.write(2)
+        (self.out / "own.png").write_bytes(picture.png(np.zeros((2, 2), np.uint8), np.zeros((256, 3), np.uint8)))
+        self.assertRegex(self.page(), r'<img src="data:image/png;base64,[^"]*" alt="own.png">')
+
+    def test_is_cheap(self):
+        self.write(2, frames=100)
+        start = time.process_time()
+        text = self.page()
+        self.assertLess(time.process_time() - start, 1.0)
+        self.assertLess(len(text), 1_000_000)
+        self.assertEqual(text.count('"speed": "data:'), picture.MOST_FRAMES)
+
+    def test_a_run_without_one_is_complete_all_the_same(self):
+        text = io.StringIO()
+        args = mock.Mock(scene=self.scene, overlay=[], set="resolved", variant="", own=[], words=[])
+        with contextlib.redirect_stderr(text), mock.patch.object(launcher, "command", lambda *_: []):
+            launcher.make_page(args, self.out)
+        self.assertRegex(text.getvalue(), r"run \| warning \| no page was made: .*; the run's numbers are complete\n")
+
+
+class Flow(Output):
+    def test_particles_that_the_plane_cuts(self):
+        plane = flow.read_planes(self.write(3))[-1]
+        self.assertEqual(plane.speed.shape, (20, 40))
+        np.testing.assert_allclose(plane.discs, [[0.005, 0.005, 0.001]])  # the other one lies 4.5 mm off
+
+    def test_the_drawing_counts_from_the_upper_left_corner(self):
+        run = self.write(2)
+        plane = flow.read_planes(run)[-1]
+        discs, bonds = flow.places(plane, (0.0, 0.0), (0.04, 0.02))
+        self.assertEqual(discs, [125.0, 375.0, 25.0, 175.0, 375.0, 25.0])
+        self.assertEqual(bonds, [125.0, 375.0, 175.0, 375.0, 1])
+
+    def test_a_bond_that_drifted_apart_is_no_line(self):
+        run = self.write(2)
+        with h5py.File(self.out / "fields.h5", "r+") as file:
+            file["frame000003/bond_ends"][...] = [[0.0, 0.0], [0.03, 0.0]]
+        self.assertEqual([len(plane.bonds) for plane in flow.read_planes(run)], [1, 1, 1, 0])
+
+    def test_breaks_count_from_the_fluids_beginning(self):
+        run = self.write(2)
+        self.assertAlmostEqual(histories.settling_time(run), 0.04)  # 700 steps, of which 500 coupled
+
+
+class Quantities(unittest.TestCase):
+    def columns(self, rows):
+        return {name: np.array(column, float) for name, column in zip(("time", "id", "x", "y", "vx", "vy"), zip(*rows))}  # noqa: B905
+
+    def told(self, rows, end=1.0):
+        return {q["name"]: q["value"] for q in of_particles(self.columns(rows), {"x": 1.0, "y": 1.0}, end)}
+
+    def test_a_way_goes_on_through_a_periodic_side(self):
+        told = self.told([(0, 1, 0.8, 0.5, 3, 4), (0.5, 1, 0.1, 0.5, 0, 0), (1, 1, 0.4, 0.3, 0, 0), (0, 2, 0.2, 0.2, 0, 0),
+                          (0.5, 2, 0.2, 0.2, 0, 0), (1, 2, 0.2, 0.2, 0, 0)])
+        self.assertAlmostEqual(told["mean displacement in x"], 0.3)
+        self.assertAlmostEqual(told["mean displacement in y"], -0.1)
+        self.assertEqual((told["particles at the end"], told["largest speed of a particle"]), (2, 5))
+
+    def test_those_that_have_left_are_not_there(self):
+        rows = [(0, 1, 0.1, 0.5, 0, 0), (0, 2, 0.2, 0.2, 0, 0), (1, 2, 0.3, 0.2, 0, 0)]
+        self.assertEqual(self.told(rows)["particles at the end"], 1)
+        self.assertAlmostEqual(self.told(rows)["mean displacement in x"], 0.1)
+        self.assertEqual(self.told(rows[:2]), {"particles at the end": 0, "largest speed of a particle": 0})
+
+
+class Picture(unittest.TestCase):
+    def test_is_read_back_and_marks_what_is_no_number(self):
+        scale = picture.Scale(0.0, 2.0, picture.HOT)
+        indices = scale.indices(np.array([[0.0, 1.0], [2.0, np.nan], [-5.0, 7.0]]))
+        np.testing.assert_array_equal(decoded(picture.png(indices, scale.palette())), indices)
+        self.assertEqual(indices.tolist(), [[0, 127], [254, picture.NOTHING], [0, 254]])
+        palette = scale.palette()
+        self.assertEqual((palette[0].tolist(), palette[254].tolist(), palette[255].tolist()),
+                         ([0, 0, 4], [252, 253, 191], list(picture.GREY)))
+
+    def test_large_fields_are_thinned(self):
+        self.assertEqual(picture.coarser(np.zeros((1000, 100))).shape, (250, 25))
+        self.assertEqual(picture.coarser(np.zeros((10, 320))).shape, (10, 320))
+        self.assertEqual([f for f in picture.chosen_frames(range(100))][::23], [0, 99])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,63 @@
+"""Who may include whom: fails with every include that crosses a border it must not cross."""
+
+import pathlib
+import re
+import sys
+
+from bplbm.project import ROOT
+
+INCLUDE = re.compile(r'^\s*#include\s+[<"]([^>"]+)[>"]', re.M)
+
+# Room -> rooms whose headers it may use besides its own and protocol's messages and errors.
+LBM = {
+    "base": set(), "lattice": set(), "field": {"base", "lattice"},
+    "turbulence": {"collision"},
+    "collision": {"base", "lattice", "turbulence"},
+    "boundary": {"base", "lattice", "field", "collision"},
+    "immersed": {"base", "lattice", "field", "collision"},
+    "io": {"base", "field"},
+    "solver": {"base", "lattice", "field", "collision", "turbulence", "boundary", "immersed"},
+    "coupling": {"base", "lattice", "field", "collision", "boundary", "immersed", "solver", "io"},
+    "main.cpp": {"base", "lattice", "field", "collision", "immersed", "solver", "io", "coupling"},
+}
+# Library header (prefix) -> files that may use it.
+ONLY = {
+    "mpi.h": r"protocol/(mpi_channel|mpi_calls|program).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
+    "hdf5": r"protocol/(hdf5_file|trace).*|lbm_solver/io/field_writer\.cpp",
+    "lammps": r"liggghts_coupling/(host|bond)/.*",
+    "atom.h": r"liggghts_coupling/(host|bond)/.*",
+    "fix.h": r"liggghts_coupling/(host|bond)/.*",
+    "toml++": r"lbm_solver/io/.*",
+    "Eigen": r"lbm_solver/(base/vec3|immersed/(body|marked_bodies))\.h",
+}
+
+
+def complaints():
+    for path in sorted(ROOT.glob("*/**/*")):
+        name = path.relative_to(ROOT).as_posix()
+        top = name.split("/")[0]
+        if path.suffix not in (".h", ".cpp") or top not in ("protocol", "lbm_solver", "liggghts_coupling"):
+            continue
+        for header in INCLUDE.findall(path.read_text()):
+            owner = header.split("/")[0]
+            if top == "protocol" and owner in ("lbm_solver", "liggghts_coupling"):
+                yield f"{name} includes {header}: the protocol knows neither program"
+            if {top, owner} == {"lbm_solver", "liggghts_coupling"}:
+                yield f"{name} includes {header}: the two programs never see each other"
+            if top == "lbm_solver" and owner == "lbm_solver":
+                room, other = name.split("/")[1], header.split("/")[1]
+                if other != room and other not in LBM[room]:
+                    yield f"{name} includes {header}: {room} may use {sorted(LBM[room]) or 'nothing'}"
+            for prefix, allowed in ONLY.items():
+                if (header == prefix or header.startswith((prefix + "/", prefix + "."))) and not re.fullmatch(allowed, name):
+                    yield f"{name} includes {header}: only {allowed} may"
+        if top == "protocol" and path.suffix in (".h", ".cpp"):
+            if "SPDX-License-Identifier: MIT" not in path.read_text():
+                yield f"{name} is not marked MIT"
+
+
+def main():
+    found = list(complaints())
+    print("\n".join(found) or "include rules hold")
+    return 1 if found else 0
+

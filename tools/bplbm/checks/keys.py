@@ -1,0 +1,91 @@
+"""The references against the code: each scene key, script variable, command and word that the code knows stands in its
+README, and nothing else does."""
+
+import pathlib
+import re
+import sys
+
+from bplbm.project import ROOT
+
+CALL = re.compile(r'\b(?:number|number_or|numbers_or|optional_number|integer|optional_integer|flag_or|choice_or|text_or|text|'
+                  r'vector|vector_or_zero|vectors_or_none|range|table|optional_table|tables)\(\s*"(\w+)"'
+                  r'|\b\w+\(t, "(\w+)"')
+WORD = re.compile(r'\b(?:word|key) == "(\w+)"|\bregister\w+\("(\w+)"')  # of a fix; of a pair style
+HOST, BOND = "liggghts_coupling/README.md", "liggghts_coupling/bond/README.md"
+
+
+def read(path):
+    return (ROOT / path).read_text()
+
+
+def found(pattern, text):
+    """All groups of all matches that hold something."""
+    return {group for match in re.finditer(pattern, text) for group in match.groups() if group}
+
+
+def section(path, heading):
+    """Of a README, until the next heading."""
+    text = read(path)
+    text = text[text.index(heading):]
+    return text[:(text + "\n## ").index("\n## ", 5)]
+
+
+def first_column(text):
+    """Words in the first column of a table, each without its table."""
+    rows = re.findall(r"^\| ([^|]+) \|", text, re.M)
+    return {word for row in rows for quoted in re.findall(r"`([^`]+)`", row) for word in re.findall(r"\w+", quoted)}
+
+
+def scene_keys():
+    return found(CALL, read("lbm_solver/io/scene_reader.cpp")), \
+        first_column(section("lbm_solver/README.md", "## Keys of a scene")) - {"NAME"}
+
+
+def script_variables():
+    """The particle's number and the axis are filled in."""
+    offered = read("lbm_solver/coupling/hello.cpp")
+    names = found(r'(?:number|whole)\("(\w+)"|push_back\(\{"(\w+)"', offered)
+    names |= {name.format(axis) for name in found(r'fmt::format\("([\w{}]+)", axis', offered) for axis in "xyz"}
+    names |= {name.format(1) for name in found(r'fmt::format\("([\w{}]+)", i \+ 1', offered)}
+    names |= found(r'"-var", "(\w+)"|\{"(\w+_folder)"', read("liggghts_coupling/host/main.cpp"))
+    return names, first_column(section(HOST, "## What a scene offers"))
+
+
+def commands():
+    """Styles that LIGGGHTS is taught."""
+    code = found(r'\["([\w/]+)"\]', read("liggghts_coupling/host/register_styles.cpp")) \
+        | found(r'\bname = "(bond/\w+)"', read("liggghts_coupling/bond/pair_bond.cpp"))
+    return code, found(r"\b((?:lbm|bond)/\w+)(?= [\[.…a-z])", synopses())
+
+
+def words_of_commands():
+    """Their words, each followed by a value."""
+    files = [*(ROOT / "liggghts_coupling").glob("*/fix_*.cpp"), ROOT / "liggghts_coupling/bond/pair_bond.cpp"]
+    code = {word for file in files for word in found(WORD, file.read_text())}
+    return code, found(r"(?<![\w/])([a-z]+) (?=[A-Z\d]|on\b)", synopses()) - {"fix"}
+
+
+def synopses():
+    """Lines and table cells that show how a command is written."""
+    return "\n".join(re.findall(r"(?:^|`)((?:fix ID|pair_style gran model) [^`\n]*)", read(HOST) + read(BOND), re.M))
+
+
+def properties():
+    return found(r'k\w+ = "(\w+)"', read("liggghts_coupling/bond/pair_bond.cpp")), \
+        found(r"property/global (\w+)", read(BOND))
+
+
+def main():
+    wrong = 0
+    for what, where, (code, text) in (("key", "lbm_solver/README.md", scene_keys()), ("variable", HOST, script_variables()),
+                                      ("command", "liggghts_coupling's READMEs", commands()),
+                                      ("word", "liggghts_coupling's READMEs", words_of_commands()),
+                                      ("property", BOND, properties())):
+        for name in sorted(code - text):
+            print(f"check | error | the code knows the {what} '{name}', {where} does not")
+        for name in sorted(text - code):
+            print(f"check | error | {where} has the {what} '{name}', the code does not")
+        wrong += len(code ^ text)
+        print(f"check | {len(code)} of the kind {what}")
+    return 1 if wrong else 0
+

@@ -1,0 +1,112 @@
+"""The table and the page of a sweep."""
+
+import csv
+import html
+import shlex
+
+import numpy as np
+
+from bplbm.page.chart import Line, line_chart
+from bplbm.page.html import Cell, page, section, table
+
+COSTS = ("physical time [s]", "largest Ma", "mass drift", "wall time [s]")
+STATUS = {0: ("ok", "good"), 4: ("out of tolerance", "note")}
+MOST_LINES = 8  # of one chart
+
+
+def columns_of(rows):
+    """Names of all results, in the order in which they come; costs last."""
+    found = list(dict.fromkeys(key for row in rows.values() for key in row["results"]))
+    return [c for c in found if c not in COSTS] + [c for c in found if c in COSTS]
+
+
+def status(row):
+    return STATUS.get(row["code"], ("failed", "bad"))
+
+
+def plain(value):
+    """A value as one cell of a CSV file."""
+    return " ".join(map(str, value)) if isinstance(value, list) else value
+
+
+def write_table(folder, names, rows):
+    """sweep.csv: a line a run. Returns its path."""
+    path, columns = folder / "sweep.csv", columns_of(rows)
+    with open(path, "w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*names, *columns, "status", "reason", "run"])
+        for name, row in rows.items():
+            writer.writerow([*(plain(row["values"][n]) for n in names), *(row["results"].get(c, "") for c in columns),
+                             status(row)[0], row["reason"], name])
+    return path
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def abscissa(names, rows):
+    """The varied number with the most values, which the curves are drawn against; none without one."""
+    numeric = [n for n in names if all(is_number(row["values"][n]) for row in rows.values())]
+    return max(numeric, key=lambda n: len({row["values"][n] for row in rows.values()}), default=None)
+
+
+def curves(names, rows, column, along):
+    """A line for each combination of the other values; the mean of all where there are too many for a chart."""
+    groups = {}
+    for row in rows.values():
+        value = row["results"].get(column)
+        if is_number(value):
+            others = ", ".join(f"{n.split('.')[-1]} {plain(row['values'][n])}" for n in names if n != along)
+            groups.setdefault(others, []).append((row["values"][along], value))
+    if len(groups) > MOST_LINES:
+        groups = {f"mean of {len(groups)} series": [point for points in groups.values() for point in points]}
+    lines = []
+    for others, points in groups.items():
+        x = np.unique([p[0] for p in points])
+        y = np.array([np.mean([v for at, v in points if at == one]) for one in x])
+        lines.append(Line(others, x, y, marked=True))
+    return lines
+
+
+def charts(names, rows):
+    """A chart for each result that varies."""
+    good = {name: row for name, row in rows.items() if row["results"]}
+    along = abscissa(names, good) if good else None
+    if not along or len({row["values"][along] for row in good.values()}) < 2:
+        return ""
+    drawn = []
+    for column in columns_of(good):
+        values = [row["results"].get(column) for row in good.values()]
+        numbers = [v for v in values if is_number(v) and np.isfinite(v)]
+        if numbers and max(numbers) > min(numbers) and column not in ("physical time [s]", "mass drift"):
+            drawn.append(line_chart(curves(names, good, column, along), along, column))
+    return f'<div class="row">{"".join(drawn)}</div>'
+
+
+def write_page(folder, scene, variant, names, rows, words):
+    """index.html of a sweep. Returns its path."""
+    columns = columns_of(rows)
+    lines = []
+    for name, row in rows.items():
+        said, color = status(row)
+        lines.append([*(plain(row["values"][n]) for n in names), Cell(f'<span class="{color}">{said}</span>', said),
+                      *(row["results"].get(c) for c in columns), Cell(link(folder, name), name),
+                      Cell(html.escape(row["reason"]) or "–", row["reason"], "long")])
+    failed = sum(status(row)[1] == "bad" for row in rows.values())
+    heading = f"{scene.name}{' ' + variant if variant else ''}: a sweep of {', '.join(names)}"
+    text = page(heading, f"<h1>{html.escape(heading)}</h1>",
+                f'<p class="soft">{html.escape(scene.heading())} · {len(rows)} runs, {failed} failed · '
+                'the same as a table: <a href="sweep.csv">sweep.csv</a></p>',
+                section("Curves", charts(names, rows)),
+                section("Runs", table([*names, "status", *columns, "run", "reason"], lines, sortable=True)),
+                section("How to repeat it", f"<pre>tools/sweep {html.escape(shlex.join(words))}</pre>"))
+    path = folder / "index.html"
+    path.write_text(text)
+    return path
+
+
+def link(folder, name):
+    """To the page of a run, where it has one, else to its log."""
+    target = f"{name}/index.html" if (folder / name / "index.html").exists() else f"logs/{name}.log"
+    return f'<a href="{html.escape(target)}">{html.escape(name)}</a>'

@@ -1,0 +1,43 @@
+"""Numbers that every run has, without a plot.py: of its particles and bonds, at the end and at most."""
+
+import numpy as np
+
+from bplbm.results import quantity, read_table
+
+
+def default_quantities(run):
+    """Quantities of a Run that its scene does not judge: broken bonds, speeds and ways of the particles."""
+    found = []
+    breaks = run.folder / "breaks.csv"
+    if breaks.is_file():
+        found.append(quantity("broken bonds", len(breaks.read_text().splitlines()) - 1, "1"))
+    probes = run.folder / "probes.csv"
+    if probes.is_file() and len(probes.read_text().splitlines()) > 1:
+        box = {axis: run.parameters[f"box_{axis}"] for axis in "xyz" if f"box_{axis}" in run.parameters}
+        found += of_particles(read_table(probes), box, run.summary["physical_seconds"])
+    return found
+
+
+def of_particles(table, box, end):
+    """Quantities of the columns of probes.csv. box: lengths [m] by axis; end: of the run [s]."""
+    speed = np.sqrt(sum(table[f"v{axis}"]**2 for axis in box))
+    last = table["time"] > end * (1 - 1e-6)  # no row: none is left
+    found = [quantity("particles at the end", last.sum(), "1"), quantity("largest speed of a particle", speed.max(), "m/s")]
+    for axis, length in box.items():
+        ways = displacements(table, axis, length, table["id"][last])
+        if len(ways):
+            found.append(quantity(f"mean displacement in {axis}", ways.mean(), "m"))
+    return found
+
+
+def displacements(table, axis, length, ids):
+    """How far each particle that is still there has come along an axis [m]. One that leaves through a periodic side comes
+    back at the other one, a length of the box away: from one row to the next none moves by half of it."""
+    order = np.lexsort((table["time"], table["id"]))
+    who, where = table["id"][order], table[axis][order]
+    steps = np.diff(where)
+    steps -= length * np.round(steps / length)
+    same = who[1:] == who[:-1]
+    _, numbers = np.unique(who, return_inverse=True)
+    ways = np.bincount(numbers[1:][same], steps[same], numbers.max() + 1)
+    return ways[np.isin(np.unique(who), ids)]

@@ -1,0 +1,261 @@
+"""Runs a scene of cases/ as a coupled MPI job, draws its pictures and judges its results.
+
+Called by tools/run, which has built the programs before. Exit codes: 0 ok, 1 fault or lost partner,
+2 bad input or refusal, 3 numerics, 4 a result outside its tolerance.
+"""
+
+import argparse
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import time
+
+from bplbm import output_folder, solid_alone
+from bplbm.mpi_job import STOPPED, MpiJob, environment
+from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
+from bplbm.project import BIN, TOOLS
+
+OUT_OF_TOLERANCE = 4
+FAULT = 1
+
+
+def command(args, out):
+    progress = "line" if sys.stdout.isatty() else "tenths"
+    fluid = [str(BIN / "lbm"), *scene_files(args)]
+    fluid += ["--out", str(out), "--threads", str(args.threads), "--progress", progress]
+    fluid += ["--set", args.set] + (["--variant", label(args)] if label(args) else [])
+    fluid += ["--until", repr(args.until)] if args.until is not None else []
+    fluid += ["--force"] if args.force else []
+    fluid += ["--record", os.path.abspath(args.record)] if args.record else []
+    fluid += [f"--restart={args.restart}"] if args.restart else []
+    first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
+    solid = solid_command(args, out)
+    return first + ([":", "-np", str(args.solid_ranks), *solid] if solid else [])
+
+
+def solid_command(args, out):
+    """The program that moves the particles; nothing for a fluid alone."""
+    if not args.scene.is_coupled:
+        return []
+    if args.engine == "reference":
+        return [str(BIN / "reference_engine")]
+    if args.engine == "python":
+        return ["/usr/bin/python3", str(TOOLS / "engines" / "python" / "engine.py")]
+    script = args.scene.script(args.engine)
+    if not script.exists():
+        fail(f"{args.scene.name} has no {script.name}; write one, or leave --engine out")
+    common = ["-in", str(script), "-log", str(out / f"{args.engine}.log"), "-screen", "none"]
+    if args.engine == "lammps":
+        return [str(BIN / "lammps_engine"), *common]
+    return [str(BIN / "liggghts"), *common, "-var", "out_folder", str(out)]
+
+
+def take_folder(args, out, look=False):
+    """Makes the folder ready and holds it for as long as what is returned lives; or looks whether that could be done."""
+    try:
+        if look:
+            return output_folder.check(out, bool(args.out), args.restart, args.force)
+        hold, aside = output_folder.take(out, args.scene.name, bool(args.out), args.restart, args.force)
+    except output_folder.Refused as refusal:
+        fail(refusal)
+    except OSError as error:
+        fail(f"{error.filename or out}: {error.strerror}; choose another --out")
+    if aside:
+        print(f"run | kept | the earlier run in {out} is now {aside}")
+    return hold
+
+
+def run_alone(args, out):
+    """LIGGGHTS alone in a folder of ours. Returns its exit code."""
+    try:
+        found = solid_alone.variables(solid_alone.read(scene_files(args)), args.until)
+    except solid_alone.Mistake as mistake:
+        fail(f"{args.scene.name}: {mistake}")
+    if args.force:
+        output_folder.remove_run(out)
+    script, begin = args.scene.script("liggghts"), time.monotonic()
+    code = start(solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks)
+    if code == 0:
+        solid_alone.write_summary(out, args.scene.name, args.set, label(args), found, time.monotonic() - begin)
+    elif said := solid_alone.error_in(out / "liggghts.log"):
+        print(f"run | error | liggghts: {said}", file=sys.stderr)
+    return code
+
+
+def run_job(args, out):
+    """The job in a folder of ours. Returns its exit code."""
+    if args.scene.is_solid_alone:
+        return run_alone(args, out)
+    code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks)
+    if code == 0:
+        add_solid_waiting(out)
+    return code
+
+
+def start(line, processes):
+    """Runs an mpirun line to its end. Returns its exit code."""
+    env = environment(processes)
+    added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)
+    print(f"run | {added + ' ' if added else ''}{shlex.join(line)}", flush=True)
+    job = MpiJob(line, env)
+    code = job.run()
+    if job.stopped:
+        print("run | stopped: the job was told to end", file=sys.stderr)
+        return STOPPED
+    return code if code in (0, 1, 2, 3) else FAULT
+
+
+def add_solid_waiting(out):
+    """Adds the seconds that LIGGGHTS waited for the fluid, from its log, to summary.json beside the fluid's."""
+    log = out / "liggghts.log"
+    found = re.search(r"fix lbm/couple: \d+ intervals, (\S+) s of waiting", log.read_text()) if log.exists() else None
+    if not found:
+        return
+    path = out / "summary.json"
+    summary = json.loads(path.read_text())
+    summary["solid_waiting"] = float(found.group(1))
+    path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
+    print(f"run | waiting: the fluid {summary['waiting']:.3g} s for the solid, the solid {summary['solid_waiting']:.3g} s for "
+          f"the fluid, of {summary['wall_seconds']:.3g} s")
+
+
+def draw(scene, out, until):
+    script = scene.folder / "plot.py"
+    if not script.exists():
+        return
+    env = dict(os.environ, PYTHONPATH=str(TOOLS), MPLBACKEND="Agg")
+    job = subprocess.run(["/usr/bin/python3", str(script), str(out)], env=env, check=False, stderr=subprocess.PIPE,
+                         text=True, errors="replace")
+    if job.returncode == 0:
+        sys.stderr.write(job.stderr)
+        return
+    (out / "plot.log").write_text(job.stderr)
+    lines = job.stderr.strip().splitlines() or [f"it ended with code {job.returncode}"]
+    made = json.loads((out / "summary.json").read_text())["physical_seconds"]
+    fail(f"{script} cannot judge and draw this run, which made {made:.6g} s: {lines[-1]}; "
+         f"{'a run that --until has cut short may lack what it needs: leave --until out' if until else 'correct it'} "
+         f"(its whole message is in {out / 'plot.log'}; the run's numbers are complete)", FAULT)
+
+
+def make_page(args, out):
+    """index.html of the run; without one says why, for the run is complete all the same."""
+    try:
+        from bplbm.page.run import write_page
+        print(f"run | page {write_page(out, args.scene, scene_files(args), args.words, command(args, out))}")
+    except Exception as error:  # noqa: BLE001
+        print(f"run | warning | no page was made: {type(error).__name__}: {error}; the run's numbers are complete",
+              file=sys.stderr)
+
+
+def colored(word, color):
+    """A word in an ANSI colour on a terminal that has it; plain in a file, or where NO_COLOR is set."""
+    plain = not sys.stdout.isatty() or os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
+    return word if plain else f"\033[{color}m{word}\033[0m"
+
+
+def with_unit(value, unit):
+    return f"{value:.5g}" if unit in ("1", "") else f"{value:.5g} {unit}"
+
+
+def judge(out):
+    """Prints the results and quantities of summary.json. Returns whether all results are within their tolerance."""
+    summary = json.loads((out / "summary.json").read_text())
+    for r in summary["results"]:
+        verdict = colored("pass", 32) if r["pass"] else colored("MISS", "1;31")
+        print(f"run | {verdict} | {r['name']} = {with_unit(r['value'], r['unit'])}, reference {with_unit(r['reference'], r['unit'])} "
+              f"({r['source']}), error {100 * r['error']:+.2f} %, tolerance {100 * r['tolerance']:.2g} %")
+    for q in summary.get("quantities", []):
+        print(f"run | told | {q['name']} = {with_unit(q['value'], q['unit'])}")
+    return all(r["pass"] for r in summary["results"])
+
+
+def comparison_runs(args):
+    """Options of the runs beside the main one: the other values of a choice that is `all`, or the
+    lines of the scene's study.txt."""
+    plan = args.scene.folder / "study.txt"
+    for i, (key, value) in enumerate(args.own):
+        if value == "all":
+            first, *others = args.scene.options()[key]
+            args.own[i] = (key, first)
+            return [["--" + key, other] for other in others]
+    if args.no_study or args.set != "resolved" or label(args) or args.until is not None or not plan.exists():
+        return []
+    return [line.split() for line in plan.read_text().splitlines() if line.strip() and not line.startswith("#")]
+
+
+def study(args, runs, out):
+    """Runs them, each in a folder of its own: --variant trt in study/variant-trt."""
+    for words in runs:
+        other = arguments([str(args.scene.folder), *words])
+        folder = out / "study" / "-".join(words).removeprefix("--").replace("---", "_")
+        restart = args.restart if (folder / f"{args.restart}.h5").exists() else None
+        run = argparse.Namespace(**{**vars(args), "set": other.set, "variant": other.variant, "own": other.own,
+                                    "record": None, "restart": restart, "force": not restart})
+        hold = take_folder(run, folder)
+        code = run_job(run, folder)
+        del hold
+        if code:
+            return code
+    return 0
+
+
+def main():
+    args = arguments(sys.argv[1:])
+    if args.list:
+        list_scenes()
+        return 0
+    if not args.scene:
+        fail("which scene? tools/run --list shows them")
+    out = output_folder.resolved(args.out or out_folder(args))
+    if args.look:
+        take_folder(args, out, look=True)
+        return 0
+    if args.no_build and not (BIN / "lbm").exists():
+        fail(f"{BIN / 'lbm'} is missing: leave --no-build out, or run tools/build")
+    if shutil.which("mpirun") is None:
+        fail("mpirun not found; run tools/install")
+    others = comparison_runs(args)
+    hold = take_folder(args, out)
+    before = output_folder.files(out)
+    try:
+        return go(args, others, out)
+    finally:
+        if hold:  # what has come besides lbm's own, as pictures: a later run may replace it
+            output_folder.add_files(out, output_folder.files(out) - before)
+
+
+def go(args, others, out):
+    """The job, its comparison runs, pictures and results. Returns the exit code."""
+    code = run_job(args, out) or study(args, others, out)
+    if code:
+        print(f"run | stopped with exit code {code}; logs in {out}", file=sys.stderr)
+        if code in (1, 3) and (out / "checkpoint.h5").exists():
+            print("run | its last checkpoint is complete: the same command with --restart goes on from there",
+                  file=sys.stderr)
+        if (out / "fault.h5").exists():
+            print("run | states of the fault are kept (fault.*): --restart=fault goes on from them if both sides' are",
+                  file=sys.stderr)
+        return code
+    try:
+        draw(args.scene, out, args.until is not None)
+    finally:  # a plot.py that fails leaves the page, which needs none
+        if not args.no_page and not args.scene.is_solid_alone:
+            make_page(args, out)
+    good = judge(out)
+    print(f"run | outputs in {out}")
+    for picture in sorted(out.glob("*.png")):
+        print(f"run | picture {picture}")
+    return 0 if good else OUT_OF_TOLERANCE
+
+
+def command_line():
+    """main() for the thin command. Ends the process."""
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("run | stopped: interrupted by Ctrl-C", file=sys.stderr)
+        sys.exit(STOPPED)

@@ -1,0 +1,39 @@
+"""What a drawing of a scene says of it, and where its sides lie."""
+
+import numpy as np
+
+COLOR = {"pressure": "tab:blue", "velocity": "tab:green", "moving_wall": "tab:orange", "outflow": "tab:purple"}
+
+
+def side_line(side, box, start, end):
+    """Ends of a part of a side: x of both, y of both."""
+    lx, ly = box
+    return {"left": ([0, 0], [start, end]), "right": ([lx, lx], [start, end]),
+            "bottom": ([start, end], [0, 0]), "top": ([start, end], [ly, ly])}[side]
+
+
+def words(boundary):
+    """A boundary condition in a few words."""
+    kind = boundary["kind"].replace("_", " ")
+    if "pressure" in boundary:
+        return f"{kind} {boundary['pressure'] / 1e3:g} kPa" if boundary["pressure"] else f"{kind} 0"
+    if "velocity" in boundary:
+        return f"{kind} {np.linalg.norm(boundary['velocity']):g} m/s {boundary.get('profile', '')}".rstrip()
+    return kind
+
+
+def drive_text(scene):
+    """Lines on the fluid, what drives it, and the particles."""
+    fluid, box = scene["fluid"], scene["box"]
+    parts = [f"ρ = {fluid['density']:g} kg/m³, ν = {fluid['kinematic_viscosity']:g} m²/s"]
+    if any(fluid.get("gravity", [])):
+        parts.append(f"g = {np.linalg.norm(fluid['gravity']):g} m/s² ↓")
+    if any(fluid.get("body_force", [])):
+        parts.append(f"body force {np.linalg.norm(fluid['body_force']):g} m/s² →")
+    if any(box.get("pressure_jump", [])):
+        parts.append(f"pressure jump {np.max(np.abs(box['pressure_jump'])):g} Pa")
+    if "particles" in scene:
+        d = np.atleast_1d(scene["particles"]["diameter"]) * 1e3
+        what = "discs" if len(box["size"]) == 2 else "spheres"
+        parts.append(f"{what} {' … '.join(f'{v:g}' for v in d)} mm, ρ_s = {np.max(scene['particles']['density']):g} kg/m³")
+    return "\n".join(parts)

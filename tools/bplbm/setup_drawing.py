@@ -1,0 +1,145 @@
+"""Draws a scene's box, sides, obstacles, particles and drives, as its files describe them.
+
+    tools/draw_setup soil_erosion disc_migration
+
+writes pictures/setup.png into the folder of the scene.
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+
+from matplotlib.collections import PatchCollection
+import matplotlib.pyplot as plt
+import numpy as np
+
+from bplbm import pictures  # noqa: F401  (its style)
+from bplbm.reading import read_table
+from bplbm.scene_words import COLOR, drive_text, side_line, words
+from bplbm.scenes import Unknown, find, scenes
+
+ATOM = re.compile(r"create_atoms\s+\d+\s+single\s+(\S+)\s+(\S+)")
+DIAMETER = re.compile(r"set\s+atom\s+(\d+)\s+diameter\s+(\S+)")
+
+
+def script_discs(folder):
+    """Discs x, y, diameter [m] that the scene's script creates with plain numbers, file by file."""
+    discs = []
+    for path in sorted(folder.glob("*.liggghts")):
+        text = path.read_text()
+        places = [(float(x), float(y)) for x, y in ATOM.findall(text) if "$" not in x + y]
+        diameters = {int(i): float(d) for i, d in DIAMETER.findall(text)}
+        if diameters:
+            discs += [(x, y, diameters[i + 1]) for i, (x, y) in enumerate(places)]
+        elif places:
+            gaps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+            discs += [(x, y, gaps.min()) for x, y in places]  # grains in a row touch
+    return discs
+
+
+def discs_of(scene, folder):
+    p = scene.get("particles", {})
+    discs = [(x, y, np.max(p["diameter"])) for x, y in p.get("start", [])] if p else []
+    if "grains" in scene:
+        table = read_table(folder / scene["grains"]["file"])
+        discs += list(zip(table["x"], table["y"], table["diameter"]))
+    return discs + script_discs(folder)
+
+
+def draw_sides(axes, scene, box, unit):
+    lx, ly = box
+    for key, sides in (("sides_x", ("left", "right")), ("sides_y", ("bottom", "top"))):
+        periodic = scene["box"].get(key, "wall") == "periodic"
+        for side in sides:
+            x, y = side_line(side, box, 0, ly if side in ("left", "right") else lx)
+            axes.plot(x, y, "--" if periodic else "-", color="0.55" if periodic else "k", linewidth=1 if periodic else 2.5,
+                      solid_capstyle="projecting", zorder=3)
+    offsets = {"left": (-30, 0, "right"), "right": (6, 0, "left"), "bottom": (0, -32, "center"), "top": (0, 6, "center")}
+    for b in scene.get("boundary", []):
+        length = ly if b["side"] in ("left", "right") else lx
+        x, y = side_line(b["side"], box, b.get("from", 0) / unit, b["to"] / unit if "to" in b else length)
+        axes.plot(x, y, color=COLOR[b["kind"]], linewidth=5, solid_capstyle="butt", zorder=4)
+        dx, dy, align = offsets[b["side"]]
+        axes.annotate(words(b), (np.mean(x), np.mean(y)), xytext=(dx, dy), textcoords="offset points", ha=align,
+                      va="center" if dx else "bottom", color=COLOR[b["kind"]], rotation=90 if dx else 0)
+
+
+def checked(tables):
+    """Tables of a scene that can be drawn; lbm check says more about what is wrong with one."""
+    if "fluid" not in tables:
+        raise ValueError("a scene without a fluid is not drawn; its plot.py draws its samples")
+    if len(tables["box"]["size"]) == 3:
+        raise ValueError("a box in three dimensions is not drawn; after a run, bplbm.draw_slice cuts it")
+    return tables
+
+
+def figure_of(scene, folder):
+    """A figure of a scene's tables; files that they name lie in the folder."""
+    unit = 1e-3 if max(scene["box"]["size"]) < 0.5 else 1.0
+    label = "mm" if unit == 1e-3 else "m"
+    box = np.array(scene["box"]["size"]) / unit
+    width = 4.6
+    figure, axes = plt.subplots(figsize=(width, np.clip(width * box[1] / box[0], 1.6, 6.5)))
+    for o in scene.get("obstacle", []):
+        if "diameter" in o:
+            ring = o.get("hollow", False)
+            axes.add_patch(plt.Circle(np.array(o["centre"]) / unit, o["diameter"] / 2 / unit, zorder=1 if ring else 2,
+                                      facecolor="none" if ring else "0.6", edgecolor="0.3"))
+        else:
+            low, high = np.array(o["from"]) / unit, np.array(o["to"]) / unit
+            axes.add_patch(plt.Rectangle(low, *(high - low), facecolor="0.6", edgecolor="0.3"))
+    discs = [plt.Circle((x / unit, y / unit), d / 2 / unit) for x, y, d in discs_of(scene, folder)]
+    axes.add_collection(PatchCollection(discs, facecolor="wheat", edgecolor="0.3", linewidth=0.5, zorder=2))
+    draw_sides(axes, scene, box, unit)
+    axes.set_aspect("equal")
+    axes.set_xlim(-0.02 * box[0], 1.02 * box[0])
+    axes.set_ylim(-0.02 * box[1], 1.02 * box[1])
+    axes.grid(False)
+    axes.set_facecolor("#eef4fb")
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    axes.set_xlabel(f"x [{label}]", labelpad=16 if any(b["side"] == "bottom" for b in scene.get("boundary", [])) else 4)
+    axes.set_ylabel(f"y [{label}]", labelpad=16 if any(b["side"] == "left" for b in scene.get("boundary", [])) else 4)
+    figure.text(0.5, 1.0, drive_text(scene), ha="center", va="bottom", fontsize=8, transform=figure.transFigure)
+    return figure
+
+
+def draw(scene):
+    """Writes the picture of a Scene into its folder. Returns its path."""
+    figure = figure_of(checked(scene.tables()), scene.folder)
+    path = scene.folder / "pictures" / "setup.png"
+    path.parent.mkdir(exist_ok=True)
+    figure.savefig(path, bbox_inches="tight")
+    plt.close(figure)
+    return path
+
+
+def main():
+    p = argparse.ArgumentParser(prog="tools/draw_setup", description=__doc__.splitlines()[0])
+    p.add_argument("scenes", nargs="*", metavar="SCENE", help="names of cases/, or paths of scenes")
+    p.add_argument("--list", action="store_true", help="the scenes, and nothing else")
+    args = p.parse_args()
+    if args.list:
+        print("\n".join(scenes()))
+        return 0
+    if not args.scenes:
+        p.error("which scene? --list shows them")
+    for name in args.scenes:
+        try:
+            scene = find(name)
+        except Unknown as unknown:
+            print(f"draw_setup | error | {unknown}", file=sys.stderr)
+            return 2
+        try:
+            picture = draw(scene)
+        except (OSError, KeyError, TypeError, ValueError) as e:
+            why = f"lacks {e}; build/release/bin/lbm check says what a scene needs" if isinstance(e, KeyError) else e
+            print(f"draw_setup | error | {scene.file}: {why}", file=sys.stderr)
+            return 2
+        print(f"draw_setup | {picture}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,269 @@
+"""Runs a scene with all combinations of some values, and puts the results into one table and one page.
+
+    tools/sweep settling_disc --set particles.density=1100,1250,1500 --set fluid.kinematic_viscosity=1e-5,2e-5
+    tools/sweep erosion --set bond_strength=100,200,400 --set seed=1..5 --jobs 2
+    tools/sweep bed --set phi=0.1,0.2,0.3 --let 'fluid.body_force=[0, phi*(particles.density/fluid.density-1)*9.81]'
+
+A name without a table is one of [particles.variables], or, if an expression uses it, a name for expressions. What has been
+run is kept and not run again: the same command goes on with what is missing, and more values only add runs.
+"""
+
+import argparse
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+from bplbm import output_folder
+from bplbm.options import arguments, label, out_folder, scene_files, whole
+from bplbm.project import TOOLS
+from bplbm.scenes import scenes
+from bplbm.sweep_values import Mistake, Sweep, axis, path_of
+from bplbm.toml_text import read_laid_over, toml
+
+OUT_OF_TOLERANCE = 4
+WAYS = {0: "ok", 1: "fault", 2: "refused", 3: "numerics", OUT_OF_TOLERANCE: "out of tolerance"}
+ANSWERED = (0, OUT_OF_TOLERANCE)  # runs that came to their end
+HELP_ON_MORE = "Other options are those of tools/run, as --variant, --until or --threads, and reach every run."
+
+
+def fail(text):
+    print(f"sweep | error | {text}", file=sys.stderr)
+    sys.exit(2)
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        fail(f"{message}; see tools/sweep --help")
+
+
+def parser():
+    p = Parser(prog="tools/sweep", description=__doc__, epilog=HELP_ON_MORE, allow_abbrev=False,
+               formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("scene", nargs="?", help="name of a folder in cases/, or the path of a scene's folder or scene.toml")
+    p.add_argument("--set", action="append", default=[], metavar="KEY=VALUES",
+                   help="values between commas, or 1..5; repeatable")
+    p.add_argument("--let", action="append", default=[], metavar="KEY=EXPRESSION",
+                   help="a key that follows from others; repeatable, later ones may use earlier ones")
+    p.add_argument("--parameter-set", default="resolved", metavar="NAME", help="what tools/run calls --set: resolved, literal, fine")
+    p.add_argument("--jobs", type=whole, default=1, metavar="N", help="runs at the same time")
+    p.add_argument("--out", metavar="DIR", help="a new folder or that of an earlier sweep; default: out/SCENE-sweep")
+    p.add_argument("--retry", action="store_true", help="run again what has failed")
+    p.add_argument("--no-build", action="store_true", help="take the programs as they are built; install and build nothing")
+    p.add_argument("--list", action="store_true", help="print the runs and start none")
+    p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
+    return p
+
+
+def let(text):
+    key, equals, expression = text.partition("=")
+    if not equals or not expression:
+        raise Mistake(f"--let {text}: write it as KEY=EXPRESSION")
+    path_of(key)
+    return key, expression
+
+
+class Table:
+    """What is known of each run of a sweep's folder: sweep.json, written whole after each run."""
+
+    def __init__(self, folder):
+        self.folder, self.path, self.lock = folder, folder / "sweep.json", threading.Lock()
+        self.rows = json.loads(self.path.read_text())["runs"] if self.path.exists() else {}
+
+    def add(self, name, row):
+        with self.lock:
+            self.rows[name] = row
+            part = self.path.with_suffix(".part")
+            part.write_text(json.dumps({"runs": self.rows}, indent=1, ensure_ascii=False) + "\n")
+            part.replace(self.path)
+
+    def has(self, name, made_of, retry):
+        row = self.rows.get(name)
+        return row is not None and row["made_of"] == made_of and (row["code"] in ANSWERED or not retry)
+
+
+def made_of(args, overlay):
+    """A hash of all that a run follows from: scene, overlays, scripts, and the other options."""
+    digest = hashlib.sha256(overlay.encode())
+    folder = args.scene.folder
+    for path in sorted({*map(pathlib.Path, scene_files(args)), *folder.glob("*.liggghts"), *folder.glob("in.*"),
+                        *folder.glob("plot.py")}):
+        digest.update(path.read_bytes())
+    digest.update(repr((args.engine, args.until)).encode())
+    return digest.hexdigest()[:16]
+
+
+def reason_of(log):
+    """The last error of a run, without the program's name; else its last line."""
+    errors = re.findall(r"^\w+ \| error \| (.*)$", log, re.M)
+    ours = [e for e in errors if not e.startswith("the fluid program stopped")]
+    lines = [line for line in log.splitlines() if line.strip()]
+    return (ours or errors or lines or ["nothing was said"])[-1][:400]
+
+
+def results_of(folder):
+    """Results, quantities and costs of a finished run: dict "name [unit]" -> number."""
+    from bplbm.quantities import default_quantities
+    from bplbm.results import Run
+    run = Run(folder)
+    summary = run.summary
+    numbers = {}
+    for number in [*summary["results"], *summary.get("quantities", []), *default_quantities(run)]:
+        unit = "" if number["unit"] == "1" else f" [{number['unit']}]"
+        numbers.setdefault(number["name"] + unit, number["value"])
+    return {**numbers, "physical time [s]": summary["physical_seconds"], "largest Ma": summary["ma_max"],
+            "mass drift": summary["mass_drift"], "wall time [s]": summary["wall_seconds"]}
+
+
+class Runner:
+    """Starts the runs, some at a time, and ends them in good order at Ctrl-C."""
+
+    def __init__(self, words, table):
+        self.words, self.table = words, table
+        self.stopped, self.jobs = threading.Event(), set()
+
+    def run(self, name, chosen, overlay, hashed):
+        if self.stopped.is_set():
+            return
+        folder = self.table.folder
+        file = folder / "overlays" / f"{name}.toml"
+        file.write_text(overlay)
+        line = [sys.executable, str(TOOLS / "launch.py"), *self.words, "--no-study", "--force", "--overlay", str(file),
+                "--out", str(folder / name)]
+        with open(folder / "logs" / f"{name}.log", "w") as log:
+            start = time.monotonic()
+            with subprocess.Popen(line, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True,
+                                  env={**os.environ, "MPLBACKEND": "Agg"}) as job:
+                self.jobs.add(job)
+                if self.stopped.is_set():  # just now, and nobody has told this one
+                    job.send_signal(signal.SIGINT)
+                code = job.wait()
+                self.jobs.discard(job)
+        if self.stopped.is_set():
+            return
+        text = (folder / "logs" / f"{name}.log").read_text(errors="replace")
+        row = {"values": chosen, "made_of": hashed, "code": code, "seconds": round(time.monotonic() - start, 2),
+               "reason": "" if code in ANSWERED else reason_of(text),
+               "results": results_of(folder / name) if code in ANSWERED else {}}
+        self.table.add(name, row)
+        reason = f" | {row['reason']}" if row["reason"] else ""
+        print(f"sweep | {name} | {WAYS.get(code, code)}, {row['seconds']:.3g} s{reason}", flush=True)
+
+    def stop(self, *_):
+        """Each run is told once, as by Ctrl-C; a second one ends it at once."""
+        self.stopped.set()
+        for job in list(self.jobs):
+            job.send_signal(signal.SIGINT)
+
+    def all(self, runs, jobs):
+        """All runs, some at the same time."""
+        before = {s: signal.signal(s, self.stop) for s in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+                for done in [pool.submit(self.run, *run) for run in runs]:
+                    done.result()
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+
+def planned(sweep, args):
+    """Name, values, overlay and hash of each run. Throws Mistake."""
+    runs = []
+    for chosen in sweep.combinations():
+        overlay = toml(sweep.overlay(chosen))
+        runs.append((sweep.label(chosen), chosen, overlay, made_of(args, overlay)))
+    if len({name for name, *_ in runs}) < len(runs):
+        raise Mistake("two runs would have the same name; write values that differ in letters and digits")
+    return runs
+
+
+def take_folder(folder, scene):
+    """Makes the folder ours, unless it is somebody else's. Returns a Hold on it."""
+    if folder.exists() and not folder.is_dir():
+        fail(f"{folder}: is no folder; choose another --out")
+    if not output_folder.is_empty(folder) and not (output_folder.is_marked(folder) and (folder / "overlays").is_dir()):
+        fail(f"{folder}: is not empty, and no folder of an earlier sweep; choose another --out")
+    output_folder.mark(folder, scene.name)
+    for name in ("overlays", "logs"):
+        (folder / name).mkdir(exist_ok=True)
+    try:
+        return output_folder.Hold(folder)
+    except output_folder.Refused as refused:
+        fail(refused)
+
+
+def checked(args):
+    """Arguments of tools/run that a sweep can pass on."""
+    for name in ("out", "restart", "force", "record", "overlay"):
+        if getattr(args, name):
+            fail(f"--{name} is of a single run, and cannot be given to a sweep")
+    if key := next((key for key, value in args.own if value == "all"), None):
+        fail(f"--{key} all: a sweep takes one value of it")
+    return args
+
+
+def main():
+    options, rest = parser().parse_known_args()
+    if not options.scene:
+        if rest:
+            fail(f"no option '{rest[0]}' without a scene; see tools/sweep --help")
+        if options.list:
+            print("\n".join(scenes()))
+            return 0
+        fail("which scene? as tools/sweep settling_disc --set particles.density=1100,1250")
+    words = [options.scene, *rest, "--set", options.parameter_set]
+    args = checked(arguments(words))
+    try:
+        if not options.set:
+            raise Mistake("nothing is varied; add --set KEY=VALUE,VALUE")
+        sweep = Sweep(read_laid_over(scene_files(args)), tuple(map(axis, options.set)), tuple(map(let, options.let)))
+        runs = planned(sweep, args)
+    except Mistake as mistake:
+        fail(mistake)
+    except (OSError, ValueError) as error:
+        fail(f"{args.scene.file}: {error}")
+    if options.list:
+        for name, _, overlay, _ in runs:
+            print(f"# {name}\n{overlay}")
+        return 0
+    if options.look:
+        return 0
+    out = pathlib.Path(options.out or f"{out_folder(args)}-sweep").resolve()
+    return go(args, words, options, sweep, runs, out)
+
+
+def go(args, words, options, sweep, runs, out):
+    """The runs that are missing, the table and the page. Returns the exit code."""
+    from bplbm.page.sweep import write_page, write_table  # they need numpy, which --look does without
+    hold = take_folder(out, args.scene)
+    table = Table(out)
+    missing = [run for run in runs if not table.has(run[0], run[3], options.retry)]
+    if len(missing) < len(runs):
+        print(f"sweep | {len(runs) - len(missing)} of {len(runs)} runs are there already")
+    runner = Runner(words, table)
+    runner.all(missing, options.jobs)
+    rows = {name: table.rows[name] for name, *_ in runs if name in table.rows}
+    names = [a.name for a in sweep.axes]
+    print(f"sweep | table {write_table(out, names, rows)}")
+    print(f"sweep | page {write_page(out, args.scene, label(args), names, rows, sys.argv[1:])}")
+    hold.file.close()
+    if runner.stopped.is_set():
+        print("sweep | stopped: the same command goes on with what is missing", file=sys.stderr)
+        return 1
+    failed = sum(row["code"] not in ANSWERED for row in rows.values())
+    if failed:
+        print(f"sweep | {failed} of {len(rows)} runs failed; their reasons are in the table, what they said in {out / 'logs'}",
+              file=sys.stderr)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
