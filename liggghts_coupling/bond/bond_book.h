@@ -3,6 +3,8 @@
 /// what happened to them.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,6 +15,27 @@
 
 namespace dem {
 
+/// A straight cut in the xy plane; in three dimensions the plane above it along z.
+struct Notch {
+  std::array<double, 2> from{}, to{};  ///< its ends [m]
+
+  /// Whether the line between two centres crosses the cut; touching its end is crossing.
+  bool separates(const double* a, const double* b) const {
+    const auto side = [](const auto& p, const auto& q, const auto& x) {
+      return (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0]);
+    };
+    return side(from, to, a) * side(from, to, b) <= 0.0 && side(a, b, from) * side(a, b, to) <= 0.0;
+  }
+};
+
+/// Two particles that may be bonded.
+struct BondCandidate {
+  std::array<long, 2> ids{};
+  std::array<int, 2> types{};
+  std::array<const double*, 2> centres{};  ///< [m][3]
+  double overlap = 0.0;                    ///< negative in a gap [m]
+};
+
 /// Which pairs are to be bonded in the coming force computation.
 struct BondRequest {
   std::string fix;                           ///< that asks for it
@@ -20,13 +43,17 @@ struct BondRequest {
   double gap = 0.0;                          ///< largest gap [m]
   std::optional<std::pair<int, int>> types;  ///< only between these two
   std::optional<std::set<std::pair<long, long>>>
-      listed;  ///< only these pairs of ids, smaller first
+      listed;                    ///< only these pairs of ids, smaller first
+  std::vector<Notch> notches{};  ///< no bond across these
 
-  bool wants(long a, long b, int type_a, int type_b, double overlap) const {
-    if (-overlap > gap) return false;
-    if (types && *types != std::pair(type_a, type_b) && *types != std::pair(type_b, type_a))
-      return false;
-    return !listed || listed->contains({std::min(a, b), std::max(a, b)});
+  bool wants(const BondCandidate& pair) const {
+    if (-pair.overlap > gap) return false;
+    const auto [a, b] = pair.types;
+    if (types && *types != std::pair(a, b) && *types != std::pair(b, a)) return false;
+    if (listed && !listed->contains(std::minmax(pair.ids[0], pair.ids[1]))) return false;
+    return std::none_of(notches.begin(), notches.end(), [&pair](const Notch& notch) {
+      return notch.separates(pair.centres[0], pair.centres[1]);
+    });
   }
 
   long made = 0;   ///< bonds, of this process
@@ -64,7 +91,8 @@ struct BondBook {
   bool has_spread = false;  ///< some fix has set it
   double spread = 0.0;      ///< of the strengths
   unsigned long seed = 0;
-  double largest_gap = 0.0;  ///< of any bond made, for the guard [m]
+  double largest_gap = 0.0;   ///< without force, of any bond made, for the guard [m]
+  double reserved_gap = 0.0;  ///< for which pairs keep their history in this run [m]
 
   BondTally tally;
   long intact = 0;                 ///< at the last force computation

@@ -83,6 +83,10 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
       request.listed = read_list(arg[k + 1]);
       wanted_ = static_cast<long>(request.listed->size());
       k += 2;
+    } else if (word == "notch") {
+      need(4);
+      request.notches.push_back(read_notch(arg + k + 1));
+      k += 5;
     } else if (word == "spread") {
       need(1);
       spread = argument<double>(error, this, word, arg[k + 1]);
@@ -94,13 +98,18 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
       seed = static_cast<unsigned long>(argument<int>(error, this, word, arg[k + 1]));
       k += 2;
     } else {
-      error->fix_error(
-          FLERR, this,
-          ("knows no '" + word + "'; use gap G [types A B] [list FILE] [spread S seed N]").c_str());
+      error->fix_error(FLERR, this,
+                       ("knows no '" + word +
+                        "'; use gap G [types A B] [list FILE] [notch X1 Y1 X2 Y2] "
+                        "[spread S seed N]")
+                           .c_str());
     }
   }
   if (!gap || request.gap < 0.0)
     error->fix_error(FLERR, this, "needs 'gap G', the largest gap in m, at least 0");
+  if (request.listed && !request.notches.empty())
+    error->fix_error(FLERR, this,
+                     "takes 'list' or 'notch'; leave what the notch cuts out of the list");
   agree_on_spread(spread, seed);
   BondBook::instance().requests.push_back(request);
 }
@@ -128,6 +137,14 @@ void FixBondCreate::agree_on_spread(double spread, unsigned long seed) {
                   "hold for all bonds; give all of these fixes the same",
                   spread, seed, book.spread, book.seed)
           .c_str());
+}
+
+Notch FixBondCreate::read_notch(char** ends) {
+  const auto number = [&](int k) { return argument<double>(error, this, "notch", ends[k]); };
+  const Notch notch{.from = {number(0), number(1)}, .to = {number(2), number(3)}};
+  if (notch.from == notch.to)
+    error->fix_error(FLERR, this, "notch X1 Y1 X2 Y2: its ends are the same point");
+  return notch;
 }
 
 std::set<std::pair<long, long>> FixBondCreate::read_list(const char* path) {
@@ -210,6 +227,7 @@ void FixBondCreate::setup(int) {
                          .c_str());
   tell(made, found);
   if (made > 0) warn_of_long_step();
+  check_reach();
 }
 
 /// @param made, found  bonds, and pairs that it wants, of all processes
@@ -226,6 +244,22 @@ void FixBondCreate::tell(long made, long found) const {
   if (all != made) text += fmt::format("; {} in all", all);
   for (FILE* out : {screen, logfile})
     if (out) std::fputs((text + "\n").c_str(), out);
+}
+
+/// A bond that is made under pressure has no force at a gap only: it breaks further apart than one
+/// that is made without, and the pairs of this run keep their history up to what was known before.
+void FixBondCreate::check_reach() {
+  double gap = 0.0;
+  MPI_Allreduce(&BondBook::instance().largest_gap, &gap, 1, MPI_DOUBLE, MPI_MAX, world);
+  BondBook::instance().largest_gap = gap;
+  const double reserved = BondBook::instance().reserved_gap;
+  if (gap <= reserved || update->firststep == update->laststep) return;
+  error->fix_error(FLERR, this,
+                   fmt::format("particles press on each other: a bond made there is without force "
+                               "at a gap of {:.3g} m, and would be lost beyond {:.3g} m; write "
+                               "'run 0' after this fix and before the next run",
+                               gap, reserved)
+                       .c_str());
 }
 
 /// Bonds that are too stiff for the step break by themselves: paper A Eq 8, without a safety

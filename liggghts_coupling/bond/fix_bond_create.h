@@ -10,12 +10,15 @@
 #include <set>
 #include <utility>
 
+#include "liggghts_coupling/bond/bond_book.h"
+
 namespace dem {
 
-/// fix ID all bond/create gap G [types A B] [list FILE] [spread S seed N]
+/// fix ID all bond/create gap G [types A B] [list FILE] [notch X1 Y1 X2 Y2] [spread S seed N]
 ///
 /// Bonds, once, at the beginning of the next run, every pair of particles whose gap is at most G
-/// [m]: of all types or of two, or only the pairs of ids in a file (two a line). Strengths spread
+/// [m]: of all types or of two, or only the pairs of ids in a file (two a line); none across a
+/// notch, a straight cut between two points [m] (`notch` may be repeated). Strengths spread
 /// uniformly by the part S about their value. After a restart the same line makes nothing anew: the
 /// restart file says that it was done, and with what spread. Several of these fixes add up; a pair
 /// that two of them want is bonded by the first. Their strengths have one spread and seed.
@@ -38,12 +41,14 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
 
  private:
   std::set<std::pair<long, long>> read_list(const char* path);
+  Notch read_notch(char** ends);
   void agree_on_spread(double spread, unsigned long seed);
   bool is_first() const;
   void count_leaving();
   void count_lost() const;
   void tell(long made, long found) const;
   void warn_of_long_step() const;
+  void check_reach();
   bool done_ = false;          ///< bonds were made, in this run or before the restart
   bool between_runs_ = false;  ///< the script has had time to take particles out
   long wanted_ = -1;           ///< pairs of the list

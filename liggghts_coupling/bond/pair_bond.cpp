@@ -164,7 +164,7 @@ class BondModel : protected Pointers {
   /// Bonds may stretch across a gap: the range in which a pair keeps its history must cover it,
   /// or LIGGGHTS would drop the bond without a word.
   void reserve_range(PropertyRegistry& registry) {
-    const BondBook& book = BondBook::instance();
+    BondBook& book = BondBook::instance();
     double gap = book.largest_gap;
     for (const dem::BondRequest& request : book.requests) gap = std::max(gap, request.gap);
     double stretch = 0.0;
@@ -188,6 +188,7 @@ class BondModel : protected Pointers {
           "diameter, {:.4g} m. Raise bondNormalStiffness or lower bondTensileStrength",
           worst[0], worst[1], stretch, gap, (kLargestFactor - 1.0) / 1.05 * smallest, smallest));
     neighbor->register_contact_dist_factor(std::max(factor, 1.01));
+    book.reserved_gap = (std::max(factor, 1.01) - 1.0) * smallest - stretch;
     const double meet = 2.0 * registry.max_radius() * factor + neighbor->skin;
     for (int k = 0; k < domain->dimension; ++k)
       if (domain->periodicity[k] && domain->prd[k] < 2.0 * meet)
@@ -206,7 +207,11 @@ class BondModel : protected Pointers {
     for (dem::BondRequest& request : BondBook::instance().requests) {
       if (!request.open) continue;
       const double exact = overlap < 0.0 ? d.radsum - std::sqrt(d.rsq) : overlap;
-      if (!request.wants(atom->tag[d.i], atom->tag[d.j], d.itype, d.jtype, exact)) continue;
+      if (!request.wants({.ids = {atom->tag[d.i], atom->tag[d.j]},
+                          .types = {d.itype, d.jtype},
+                          .centres = {atom->x[d.i], atom->x[d.j]},
+                          .overlap = exact}))
+        continue;
       each(request);
       any = true;
     }
@@ -225,7 +230,7 @@ class BondModel : protected Pointers {
       if (memory.bonded) return;
       dem::make_bond(memory, contact, bond, overlap);
       BondBook& book = BondBook::instance();
-      book.largest_gap = std::max(book.largest_gap, -overlap);
+      book.largest_gap = std::max({book.largest_gap, -overlap, -memory.rest_overlap});
       request.made += counted;
       book.tally.created += counted;
     });

@@ -18,6 +18,13 @@ TEST(BondCreate, ByTypeAndByList) {
   EXPECT_NE(job.output.find("bonds created: 1"), std::string::npos) << job.output;
   job = script.run(three + "fix make all bond/create gap 1e-6 types 1 1\n" + end);
   EXPECT_NE(job.output.find("bonds created: 2"), std::string::npos) << job.output;
+  for (const auto& [notch, bonds] :
+       {std::pair{"notch 0.45 0.4 0.45 0.6", "bonds created: 1"},
+        std::pair{"notch 0.45 0.51 0.45 0.6", "bonds created: 2"},
+        std::pair{"notch 0.45 0.4 0.45 0.6 notch 0.5 0.4 0.6 0.6", "bonds created: 0"}}) {
+    job = script.run(three + "fix make all bond/create gap 1e-6 " + notch + "\n" + end);
+    EXPECT_NE(job.output.find(bonds), std::string::npos) << notch << "\n" << job.output;
+  }
   job = script.run(
       three + "shell echo 1 3 > list.txt\nfix make all bond/create gap 1e-6 list list.txt\n" + end);
   EXPECT_NE(job.exit_code, 0);
@@ -58,6 +65,13 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"exponent", "ledger on", "exponent 2", "exponent is 1 (linear) or 1.5 (Hertz)"},
         Refused{"gap", "bond/create gap 1e-6", "bond/create types 1 1", "needs 'gap G'"},
         Refused{"word", "bond/create gap 1e-6", "bond/create gap 1e-6 glue 3", "knows no 'glue'"},
+        Refused{"point", "gap 1e-6", "gap 1e-6 notch 0 1 0 1", "its ends are the same point"},
+        Refused{"notch", "gap 1e-6", "gap 1e-6 notch 0 1 0", "'notch' lacks its value"},
+        Refused{
+            "listed", "fix make all bond/create gap 1e-6",
+            "shell echo 1 2 > list.txt\nfix make all bond/create gap 1e-6 list list.txt notch 0 0 "
+            "1 1",
+            "leave what the notch cuts out of the list"},
         Refused{"number", "gap 1e-6", "gap 1.2.3", "'gap 1.2.3': give a number"},
         Refused{"whole", "every 100 file", "every 100x file", "'every 100x': give a whole number"},
         Refused{"pipe", "fix make all bond/create gap 1e-6",
@@ -68,6 +82,23 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"file", "every 100 file breaks.csv", "every 100 file no/such/folder.csv",
                 "cannot be written"}),
     [](const auto& info) { return info.param.name; });
+
+/// K δ = 200 N press when the bond of K/5 is made: it is without force at a gap of 4 δ = 8 mm, and
+/// breaks by its 20 N 1 mm further on. Pulled at 1 m/s it has 11 mm behind it then.
+TEST(BondCreate, UnderPressureBreaksWhereItsLawSays) {
+  Script script;
+  const std::string pressed =
+      replaced(pulled_pair({.stiffness = 2e4}, "1 0 0"), disc(0.55, 0.5), disc(0.548, 0.5));
+  const auto refused = script.run(pressed);
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_NE(refused.output.find("write 'run 0' after this fix"), std::string::npos)
+      << refused.output;
+  expect_ok(script.run(replaced(pressed, "run 2500\n", "run 0\nrun 2500\n")));
+  const auto breaks = rows(script.file("breaks.csv"));
+  ASSERT_EQ(breaks.size(), 1U);
+  EXPECT_EQ(breaks[0][4], "tension");
+  EXPECT_NEAR(std::stod(breaks[0][1]), 0.011, 2e-5);  // two steps
+}
 
 TEST(BondCreate, WarnsWhereThereAreNoneOrTheStepIsTooLong) {
   Script script;

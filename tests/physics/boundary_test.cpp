@@ -84,7 +84,7 @@ TEST(BodyForce, ComesUpInItsRamp) {
       single.step();
       EXPECT_NEAR(single.cell(4, 3).u.x(), sum + 0.5 * force * ramp.factor(n + 1), 1e-14)
           << collision << ' ' << n;
-      if (n == 23) restored.restore(single.state());
+      if (n == 23) restored.load(single.save());
     }
     whole.advance(60);
     restored.advance(37);

@@ -105,9 +105,20 @@ def arguments(words):
     for overlay in args.overlay:
         if not pathlib.Path(overlay).is_file():
             fail(f"--overlay {overlay}: there is no such file")
+    if scene.is_solid_alone:
+        check_alone(args)
     refuse_clashes(scene, options)
     args.own = own_choices(scene, rest)
     return args
+
+
+def check_alone(args):
+    """LIGGGHTS alone takes no option of the fluid or of the exchange."""
+    given = {"--fluid-ranks": args.fluid_ranks > 1, "--threads": args.threads > 1, "--record": args.record,
+             "--restart": args.restart, "--engine": args.engine != "liggghts"}
+    for option, wrong in given.items():
+        if wrong:
+            fail(f"{args.scene.name} has no fluid, LIGGGHTS runs alone: leave {option} out")
 
 
 def refuse_clashes(scene, options):

@@ -1,8 +1,8 @@
 """The output folder of a run, as tools/run sees it: whose it is, what lies in it, and who writes there.
 
 A folder of ours carries the file .bplbm (lbm_solver/io/output_folder writes the same): the program, the scene, and a
-line `file NAME` for each file besides those that lbm knows by itself. Nothing else in it is ever removed, and that by
-lbm alone.
+line `file NAME` for each file besides those that lbm knows by itself. Nothing else in it is ever removed: by lbm, or here
+where a scene has none.
 """
 
 import fcntl
@@ -12,6 +12,7 @@ import socket
 
 MARK, LOCK = ".bplbm", ".bplbm.lock"
 RESULTS = ("summary.json", "checkpoint.h5", "checkpoint.before.h5", "fault.h5", "probes.csv", "points.csv", "obstacles.csv", "fields.h5")
+OTHERS = ("fields.xdmf", "lbm.log", "liggghts.log", "lammps.log", "breaks.csv", "plot.log")
 
 
 class Refused(Exception):
@@ -43,6 +44,15 @@ def add_files(folder, names):
     """Files that this run has written: a later one may replace them."""
     with open(folder / MARK, "a") as out:
         out.writelines(f"file {name}\n" for name in sorted(names))
+
+
+def remove_run(folder):
+    """Removes the files of an earlier run from a folder of ours, and nothing else."""
+    lines = (folder / MARK).read_text().splitlines()
+    listed = [line.removeprefix("file ") for line in lines if line.startswith("file ")]
+    for name in (*RESULTS, *OTHERS, *listed):
+        if pathlib.Path(name).name == name and not (folder / name).is_dir():
+            (folder / name).unlink(missing_ok=True)
 
 
 def files(folder):

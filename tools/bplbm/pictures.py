@@ -93,6 +93,25 @@ def draw_bonds(axes, frame, length_unit=1e-2):
         axes.add_collection(LineCollection(ends[frame["bond_state"] == state], colors=color, linewidths=width))
 
 
+def read_breaks(path):
+    """Breaks of bonds: dict of step, time [s], pair [n][2] of ids, mode, place and normal [n][2] [m, 1]."""
+    rows = [line.split(",") for line in path.read_text().splitlines()[1:]]
+
+    def columns(*which):
+        return np.array([[float(row[k]) for k in which] for row in rows]).reshape(-1, len(which))
+
+    return {"step": columns(0)[:, 0].astype(int), "time": columns(1)[:, 0], "pair": columns(2, 3).astype(int),
+            "mode": np.array([row[4] for row in rows], dtype=str), "place": columns(6, 7), "normal": columns(9, 10)}
+
+
+def draw_breaks(axes, breaks, length_unit=1e-2, length=0.004):
+    """A short line across each broken bond, where it broke: by tension red, by shear blue. length [m]."""
+    along = breaks["normal"][:, ::-1] * [-0.5 * length, 0.5 * length]
+    ends = np.stack([breaks["place"] - along, breaks["place"] + along], axis=1) / length_unit
+    for mode, color in (("tension", "tab:red"), ("shear", "tab:blue")):
+        axes.add_collection(LineCollection(ends[breaks["mode"] == mode], colors=color, linewidths=1.6))
+
+
 def animate(run, name, draw, size, seconds=5.0):
     """A GIF of all field frames. draw(axes, time, frame_name) draws one on cleared axes."""
     frames = run.frames()

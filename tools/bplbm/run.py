@@ -12,8 +12,9 @@ import shlex
 import shutil
 import subprocess
 import sys
+import time
 
-from bplbm import output_folder
+from bplbm import output_folder, solid_alone
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
 from bplbm.project import BIN, TOOLS
@@ -69,10 +70,36 @@ def take_folder(args, out, look=False):
     return hold
 
 
+def run_alone(args, out):
+    """LIGGGHTS alone in a folder of ours. Returns its exit code."""
+    try:
+        found = solid_alone.variables(solid_alone.read(scene_files(args)), args.until)
+    except solid_alone.Mistake as mistake:
+        fail(f"{args.scene.name}: {mistake}")
+    if args.force:
+        output_folder.remove_run(out)
+    script, begin = args.scene.script("liggghts"), time.monotonic()
+    code = start(solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks)
+    if code == 0:
+        solid_alone.write_summary(out, args.scene.name, args.set, label(args), found, time.monotonic() - begin)
+    elif said := solid_alone.error_in(out / "liggghts.log"):
+        print(f"run | error | liggghts: {said}", file=sys.stderr)
+    return code
+
+
 def run_job(args, out):
     """The job in a folder of ours. Returns its exit code."""
-    line = command(args, out)
-    env = environment(args.fluid_ranks * args.threads + args.solid_ranks)
+    if args.scene.is_solid_alone:
+        return run_alone(args, out)
+    code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks)
+    if code == 0:
+        add_solid_waiting(out)
+    return code
+
+
+def start(line, processes):
+    """Runs an mpirun line to its end. Returns its exit code."""
+    env = environment(processes)
     added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)
     print(f"run | {added + ' ' if added else ''}{shlex.join(line)}", flush=True)
     job = MpiJob(line, env)
@@ -80,8 +107,6 @@ def run_job(args, out):
     if job.stopped:
         print("run | stopped: the job was told to end", file=sys.stderr)
         return STOPPED
-    if code == 0:
-        add_solid_waiting(out)
     return code if code in (0, 1, 2, 3) else FAULT
 
 
@@ -220,7 +245,7 @@ def go(args, others, out):
     try:
         draw(args.scene, out, args.until is not None)
     finally:  # a plot.py that fails leaves the page, which needs none
-        if not args.no_page:
+        if not args.no_page and not args.scene.is_solid_alone:
             make_page(args, out)
     good = judge(out)
     print(f"run | outputs in {out}")

@@ -33,6 +33,14 @@ class Scene:
     def is_coupled(self):
         return self.script("liggghts").exists()
 
+    @property
+    def is_solid_alone(self):
+        """Whether it has no fluid. A file that cannot be read is lbm's to complain of."""
+        try:
+            return "fluid" not in self.tables()
+        except (OSError, ValueError):
+            return False
+
     def script(self, engine):
         return self.folder / f"in.{engine}"
 

@@ -67,6 +67,8 @@ def draw_sides(axes, scene, box, unit):
 
 def checked(tables):
     """Tables of a scene that can be drawn; lbm check says more about what is wrong with one."""
+    if "fluid" not in tables:
+        raise ValueError("a scene without a fluid is not drawn; its plot.py draws its samples")
     if len(tables["box"]["size"]) == 3:
         raise ValueError("a box in three dimensions is not drawn; after a run, bplbm.draw_slice cuts it")
     return tables

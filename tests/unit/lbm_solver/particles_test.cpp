@@ -102,7 +102,7 @@ TEST(Particles, AnIdOfAnotherEpochStartsAnew) {
     const std::int64_t body = first.bodies(0.0)[0].id;
     first.add(std::vector<BodyLoad>{{{2.0, 0.0}, {0.0, 0.0, 4.0}}});
     first.mean_loads(1);
-    if (restart) second.restore(first.memory());
+    if (restart) second.load(first.save());
     Particles& particles = restart ? second : first;
     particles.arrive(std::vector{other}, 4e-4);
     EXPECT_NE(particles.bodies(0.0)[0].id, body);

@@ -12,9 +12,9 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from bplbm import result, run  # noqa: E402
+from bplbm import output_folder, result, run, solid_alone  # noqa: E402
 from bplbm.options import arguments, scene_files  # noqa: E402
-from bplbm.scenes import find  # noqa: E402
+from bplbm.scenes import find, scenes  # noqa: E402
 
 
 class Result(unittest.TestCase):
@@ -111,6 +111,68 @@ class Launch(unittest.TestCase):
         self.assertTrue(line[split + 3].startswith("/") and line[split + 3].endswith("/bin/liggghts"))
         self.assertEqual(line[split + 2], "3")
         self.assertTrue(any(word.endswith("fine.toml") for word in line))
+
+
+class SolidAlone(unittest.TestCase):
+    """A scene without a fluid."""
+
+    run_main = Launch.run_main
+
+    SCENE = {"box": {"size": [0.1, 0.2]}, "run": {"time_step": 1e-6, "end_time": 1e-3},
+             "particles": {"diameter": [0.001, 0.002], "density": 2000.0, "contact_stiffness": 1e7,
+                           "variables": {"speed": 0.5, "law": "bond/contact", "pulled": True}}}
+
+    def changed(self, **tables):
+        return solid_alone.merged(self.SCENE, tables)
+
+    def test_only_a_scene_without_a_fluid_is_one(self):
+        alone = {name for name in scenes() if find(name).is_solid_alone}
+        self.assertEqual(alone, {"bonded_compression"})
+
+    def test_the_script_gets_what_the_fluid_offers_to_others(self):
+        found = solid_alone.variables(self.SCENE)
+        for name, text in {"x_hi": "0.1", "y_hi": "0.2", "boundary_z": "p", "diameter_min": "0.001", "solid_step": "1e-06",
+                           "solid_steps_total": "1000", "law": "bond/contact", "pulled": "1"}.items():
+            self.assertEqual(found[name], text)
+        self.assertEqual(solid_alone.variables(self.SCENE, until=2e-6)["solid_steps_total"], "2")
+
+    def test_the_command_is_one_program_with_its_variables(self):
+        line = solid_alone.command("/bin/liggghts", "/case/in.liggghts", pathlib.Path("/out"), {"speed": "0.5"}, 2)
+        self.assertNotIn(":", line)
+        self.assertEqual(line[line.index("-np") + 1], "2")
+        self.assertEqual(line[-3:], ["-var", "speed", "0.5"])
+
+    def test_mistakes_say_what_and_where(self):
+        for tables, expected in (({"run": {"time_step": 0.0}}, "run.time_step = 0.0: must be a positive number"),
+                                 ({"fluids": {}}, "knows no [fluids]"),
+                                 ({"box": {"length": 1.0}}, "knows no box.length; [box] has: size"),
+                                 ({"box": {"size": 1.0}}, "must be two or three lengths"),
+                                 ({"particles": {"density": float("nan")}}, "particles.density = nan"),
+                                 ({"particles": {"variables": {"x_lo": 1}}}, "gives this variable already"),
+                                 ({"particles": {"variables": {"a": [1]}}}, "a word with a number or a text")):
+            with self.assertRaises(solid_alone.Mistake) as caught:
+                solid_alone.variables(self.changed(**tables))
+            self.assertIn(expected, str(caught.exception))
+        with self.assertRaises(solid_alone.Mistake) as caught:
+            solid_alone.variables({key: value for key, value in self.SCENE.items() if key != "run"})
+        self.assertIn("lacks run.", str(caught.exception))
+
+    def test_options_of_the_fluid_are_refused(self):
+        for words in (["--fluid-ranks", "2"], ["--threads", "2"], ["--record", "a.h5"], ["--engine", "python"],
+                      ["--restart"]):
+            code, text = self.run_main("bonded_compression", *words)
+            self.assertEqual(code, 2)
+            self.assertIn(f"leave {words[0]} out", text)
+
+    def test_force_replaces_the_files_of_a_run_and_no_others(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            output_folder.mark(out, "scene")
+            for name in ("summary.json", "breaks.csv", "curves.png", "thesis.txt"):
+                (out / name).write_text("x")
+            output_folder.add_files(out, ["curves.png", "../thesis.txt"])
+            output_folder.remove_run(out)
+            self.assertEqual({p.name for p in out.iterdir()}, {output_folder.MARK, "thesis.txt"})
 
 
 if __name__ == "__main__":
