@@ -103,6 +103,7 @@ void Particles::arrive(std::span<const protocol::Particle> particles, double int
            mean_change_[i].omega);
   }
   loads_before_.swap(loads_);
+  whole_before_ = std::exchange(whole_now_, false);
   loads_known_ = false;
   loads_.clear();
   whole_.clear();
@@ -275,6 +276,7 @@ std::vector<protocol::Load> Particles::latest_loads() const {
   }
   for (const protocol::Load& load : loads_before_) {
     const auto found = at.find(load.id);
+    if (whole_before_ && (found == at.end() || !at_home(found->second))) continue;
     if (found == at.end())
       latest.push_back(load);
     else if (before_[found->second])  // else of the one that had its id before
@@ -342,6 +344,7 @@ constexpr std::array<Particles::Kept, 6> Particles::kKept{
 Record Particles::save() const {
   std::vector<double> lines;
   std::vector<Past> all = present();
+  const Everything whole = gather();  // of the loads every rank has a part
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!at_home(i)) continue;
     lines.insert(lines.end(),
@@ -356,14 +359,21 @@ Record Particles::save() const {
     ids[i] = std::bit_cast<std::int64_t>(lines[i * line]);
     epochs[i] = std::bit_cast<std::int64_t>(lines[i * line + 1]);
   }
+  std::unordered_map<std::int64_t, const protocol::Load*> load_of;
+  if (whole_.empty())
+    for (const protocol::Load& load : whole.loads) load_of.emplace(load.id, &load);
   Record record;
   for (std::size_t k = 0; k < kKept.size(); ++k) {
+    const std::string name = kKept[k].name;
     std::vector<double> vectors;
     for (std::size_t i = 0; i < n; ++i) {
       const double* from = &lines[i * line + integers + 3 * k];
+      const auto load = load_of.find(ids[i]);
+      if (load != load_of.end() && name == "forces") from = load->second->force.data();
+      if (load != load_of.end() && name == "torques") from = load->second->torque.data();
       vectors.insert(vectors.end(), from, from + 3);
     }
-    record.set(kKept[k].name, std::move(vectors));
+    record.set(name, std::move(vectors));
   }
   record.set("ids", std::move(ids));
   record.set("epochs", std::move(epochs));
@@ -381,6 +391,7 @@ void Particles::load(const Record& record) {
   }
   particles_.assign(all.size(), {});
   loads_.clear();
+  whole_now_ = !ranks_.alone();
   mean_change_.clear();
   for (std::size_t i = 0; i < all.size(); ++i) {
     protocol::State& s = particles_[i].state;

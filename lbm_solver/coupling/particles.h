@@ -173,6 +173,8 @@ class Particles {
   std::vector<protocol::Load> loads_;         // this rank's parts
   std::vector<protocol::Load> whole_;         // of all ranks; where virtual masses are about
   std::vector<protocol::Load> loads_before_;  // loads_ of the interval before
+  bool whole_now_ = false,
+       whole_before_ = false;  // those are from a checkpoint, whole on every rank
   std::optional<protocol::SolidReport> report_;
 };
 

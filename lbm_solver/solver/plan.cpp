@@ -209,13 +209,16 @@ double choose_magic(const Scene& s, const KernelChoice& k) {
   return magic;
 }
 
-/// Part of the box that discs or spheres at rest cover; 0 where there are none.
-double fraction_at_rest(const Scene& s) {
-  double covered = 0.0, box = 1.0;
+/// Part of the box that the discs or spheres cover of which the scene knows: obstacles, and the
+/// particles that it starts; 0 where there are none.
+double fraction_known(const Scene& s) {
+  double covered = 0.0, box = s.box.dimension == 2 ? s.box.depth : 1.0;
   for (int k = 0; k < s.box.dimension; ++k) box *= s.box.size[k];
   for (const ObstacleScene& o : s.obstacles)
-    if (o.round && !o.hollow)
-      covered += particle_volume(s, o.diameter) / (s.box.dimension == 2 ? s.box.depth : 1.0);
+    if (o.round && !o.hollow) covered += particle_volume(s, o.diameter);
+  if (s.particles && s.coupling)
+    covered += static_cast<double>(s.particles->start.size()) *
+               particle_volume(s, s.particles->diameter.hi);
   return covered / box;
 }
 
@@ -237,9 +240,12 @@ void expect_error(const Scene& s, Plan& plan) {
   const int d = s.box.dimension;
   const double ratio = s.particles ? std::ranges::min(s.particles->hydraulic_ratio) : 1.0;
   const double cells = ratio * smallest / plan.units.dx;
-  std::vector<double> fractions{s.coupling ? kLooseBed[d - 2] : fraction_at_rest(s)};
-  if (s.coupling && plan.kernel.collision == "trt")
-    fractions.push_back(std::min(kDenseBed[d - 2], kPackedBed[d - 2] * std::pow(ratio, d)));
+  std::vector<double> fractions{fraction_known(s)};
+  if (fractions[0] == 0.0) {  // the script brings the particles: a loose bed, and a dense one
+    fractions[0] = kLooseBed[d - 2];
+    if (plan.kernel.collision == "trt")
+      fractions.push_back(std::min(kDenseBed[d - 2], kPackedBed[d - 2] * std::pow(ratio, d)));
+  }
   ExpectedError worst;
   double where = 0.0;
   for (const double fraction : fractions) {

@@ -119,12 +119,13 @@ TEST_F(OutputTest, ARestartMayHaveALaterEnd) {
   EXPECT_NEAR(last_time("out/points.csv"), 10.0, 0.04);  // an interval is 0.039 s
   folder_.write("scene.toml",
                 test::replaced(kScene, "velocity_scale = 0.01", "velocity_scale = 0.02"));
-  expect_end(run("--restart --until 10"), 2, {"another grid or step"});
+  expect_end(run("--restart --until 10"), 2, {"of another scene", "fluid.velocity_scale: 0.01 then, 0.02 now"});
 }
 
 TEST_F(OutputTest, ACheckpointThatIsNoFileIsRefused) {
   expect_ok(run("--until 1"));
   fs::remove(path("out/checkpoint.h5"));
+  fs::remove(path("out/checkpoint.before.h5"));  // else that one would be used
   ASSERT_EQ(mkfifo(path("out/checkpoint.h5").c_str(), 0600), 0);
   expect_end(run("--restart"), 2, {"checkpoint.h5: is no regular file (a pipe or a device?)"});
 }

@@ -101,7 +101,8 @@ Bytes damaged(const std::string& script, const Setting& setting) {
   StateBatch batch{{0, 0.0, kContinue}, setting, {at(4, 0.01, 0.04)}, {}, {}};
   if (script == "twice") {
     batch.states.push_back(batch.states[0]);
-    batch.shapes.push_back({4, 0.00125, 1.0, 1.0, 1});
+    const double mass = 1250.0 * 3.14159265358979 * 0.00125 * 0.00125;
+    batch.shapes.push_back({4, 0.00125, mass, 0.5 * mass * 0.00125 * 0.00125, 1});
   }
   Bytes frame = encode(batch);  // shapeless as it is
   if (script == "swapped") std::reverse(frame.begin(), frame.begin() + 4);
