@@ -37,8 +37,8 @@ class NewScenes(unittest.TestCase):
                                      capture_output=True, timeout=30, check=False)
             self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
             warnings = [line for line in (checked.stdout + checked.stderr).splitlines() if "warning" in line]
-                # templates are coarse, so that they run at once; check says what that costs
-                self.assertEqual([line for line in warnings if "cells a diameter the drag is" not in line], [])
+            # templates are coarse, so that they run at once; check says what that costs
+            self.assertEqual([line for line in warnings if "cells a diameter the drag is" not in line], [])
 
     def test_one_runs_where_it_lies(self):
         self.tool("new", "sand")
