@@ -242,10 +242,12 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   const auto nx = static_cast<std::size_t>(n[0]);
   std::vector<double> rho(nx), u[3];
   for (auto& component : u) component.assign(nx, 0.0);
+  Vec3 arrived = Vec3::Zero();
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y) {
       fluid.row(y, z, rho, {u[0], u[1], u[2]});
       for (int x = 0; x < n[0]; ++x) {
+        if (fluid.cover()) arrived += fluid.arrived_momentum(x, y, z);
         frame.pressure.push_back(static_cast<float>((rho[x] - 1.0) * plan_.units.pressure()));
         for (const auto& component : u)
           frame.velocity.push_back(static_cast<float>(component[x] * plan_.units.velocity()));
@@ -253,6 +255,11 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
           frame.solid_fraction.push_back(static_cast<float>(fluid.solid_fraction(x, y, z)));
       }
     }
+  if (fluid.cover()) {
+    ranks_.sum({arrived.data(), 3});
+    const double cells = static_cast<double>(frame.nx) * frame.ny * frame.nz;
+    frame.flux = arrived / cells * plan_.units.velocity();
+  }
   frame.pressure = ranks_.gather(std::move(frame.pressure), 1);
   frame.velocity = ranks_.gather(std::move(frame.velocity), 3);
   if (fluid.has_solids()) frame.solid_fraction = ranks_.gather(std::move(frame.solid_fraction), 1);

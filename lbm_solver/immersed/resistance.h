@@ -24,9 +24,9 @@ struct OddGhost {
   }
 };
 
-/// Λ of TRT where cells collide by resistance. Between planes at a distance H the flux of a parabola
-/// is too large by (Λ - 1/8)·2/3 H G/ν, its values by (Λ - 3/16)·2/3 G/ν. A drag is made of fluxes,
-/// and arrays of discs and spheres come out best with 1/10.
+/// Λ of TRT where cells collide by resistance. Between planes at a distance H the flux of a
+/// parabola is too large by (Λ - 1/8)·2/3 H G/ν, its values by (Λ - 3/16)·2/3 G/ν. A drag is made
+/// of fluxes, and arrays of discs and spheres come out best with 1/10.
 inline constexpr double kResistanceMagic = 0.1;
 
 /// How fast a covered cell exchanges its odd half with the solid. Of momentum w (against the

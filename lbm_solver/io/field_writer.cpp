@@ -163,6 +163,8 @@ void FieldWriter::write(const FieldFrame& f) {
   const Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                      H5Gclose, "create " + name);
   protocol::hdf5::set_attribute(group, "time", f.time);
+  for (int k = 0; f.flux && k < dimension_; ++k)
+    protocol::hdf5::set_attribute(group, std::string("flux_") + "xyz"[k], (*f.flux)[k]);
   const std::size_t bonds = f.bond_state.size();
   const Entry entry{f.time, f.nx, f.ny, f.nz, !f.solid_fraction.empty(), f.particles.size(), bonds};
   std::vector<hsize_t> cells;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ struct FieldFrame {
   std::vector<float> pressure;        ///< [nz][ny][nx], against rest and hydrostatic [Pa]
   std::vector<float> velocity;        ///< [nz][ny][nx][3] [m/s]
   std::vector<float> solid_fraction;  ///< [nz][ny][nx]; empty without solids
+  /// Mean over the box of the momentum that has arrived, over the density at rest [m/s]: in steady
+  /// flow the flux through every face of the box, covered cells too, under every solid term.
+  std::optional<Vec3> flux;
   std::vector<protocol::Particle> particles;
   std::vector<protocol::Load> loads;  ///< on them, in their order
   std::vector<double> bond_ends;      ///< [n][2][dimension]: of both centres [m]

@@ -20,16 +20,6 @@ double width(const Scene& s) {
   return walls > 0.0 ? walls : box;
 }
 
-/// Largest difference between the pressures of boundaries, or across periodic sides [Pa].
-double pressure_difference(const Scene& s) {
-  double lo = 0.0, hi = 0.0;
-  for (const BoundaryScene& b : s.boundaries) {
-    lo = std::min(lo, b.pressure);
-    hi = std::max(hi, b.pressure);
-  }
-  return std::max(hi - lo, s.box.pressure_jump.cwiseAbs().maxCoeff());
-}
-
 /// A channel of half-width w/2 under an acceleration: a parabola, or a free fall through the width.
 double channel_speed(const Scene& s, double acceleration) {
   const double w = width(s);
@@ -49,6 +39,15 @@ double falling_speed(const Scene& s) {
 
 }  // namespace
 
+double largest_pressure(const Scene& s) {
+  double lo = 0.0, hi = 0.0;
+  for (const BoundaryScene& b : s.boundaries) {
+    lo = std::min(lo, b.pressure);
+    hi = std::max(hi, b.pressure);
+  }
+  return std::max(hi - lo, s.box.pressure_jump.cwiseAbs().maxCoeff());
+}
+
 std::vector<Drive> drives(const Scene& s) {
   std::vector<Drive> list;
   const auto add = [&list](double speed, std::string what) {
@@ -61,7 +60,7 @@ std::vector<Drive> drives(const Scene& s) {
   for (const ObstacleScene& o : s.obstacles)
     add(0.5 * o.diameter * o.spin.norm(),
         fmt::format("an obstacle's spin = {:.3g} rad/s", o.spin.norm()));
-  const double force = s.fluid.body_force.norm(), pressure = pressure_difference(s);
+  const double force = s.fluid.body_force.norm(), pressure = largest_pressure(s);
   add(channel_speed(s, force), fmt::format("fluid.body_force = {:.3g} m/s²", force));
   add(std::sqrt(2.0 * pressure / s.fluid.density),
       fmt::format("a pressure difference of {:.3g} Pa", pressure));

@@ -19,4 +19,7 @@ struct Drive {
 /// the weight of the particles in the fluid. The fastest first; empty where nothing drives.
 std::vector<Drive> drives(const Scene& scene);
 
+/// Largest difference between the pressures of boundaries, or across periodic sides [Pa].
+double largest_pressure(const Scene& scene);
+
 }  // namespace lbm

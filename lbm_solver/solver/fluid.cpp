@@ -212,6 +212,10 @@ Fluid::Cell Fluid::cell(int x, int y, int z) const {
   return {m.drho + 1.0, (m.j + 0.5 * body_force()) / (m.drho + 1.0)};
 }
 
+Vec3 Fluid::arrived_momentum(int x, int y, int z) const {
+  return cell_moments(f_, stream_, x, y, z).j;
+}
+
 Fluid::Cell Fluid::at(const Vec3& place) {
   int low[3];
   double part[3];

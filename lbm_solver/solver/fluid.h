@@ -93,6 +93,9 @@ class Fluid {
   };
   /// Density and velocity of the populations that have arrived at a cell, whatever covers it.
   Cell cell(int x, int y, int z = 0) const;
+  /// Momentum of the populations that have arrived at a cell, without any of the body force: its
+  /// mean over the box is the flux of a steady flow.
+  Vec3 arrived_momentum(int x, int y, int z = 0) const;
   /// What a row shows, at any place of the box: between the centres of the nearest cells (linear
   /// along each axis); the density is that of those with fluid. Collective.
   Cell at(const Vec3& place);

@@ -9,6 +9,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/immersed/resistance.h"
+#include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/expected_error.h"
 #include "lbm_solver/solver/scene_check.h"
 
@@ -56,16 +57,6 @@ double reference_length(const Scene& s) {
   for (const auto& o : s.obstacles)
     if (o.round) return o.diameter;
   return s.box.size.x();
-}
-
-/// Largest pressure difference that the boundaries impose [Pa].
-double largest_pressure(const Scene& s) {
-  double lo = 0.0, hi = 0.0;
-  for (const auto& b : s.boundaries) {
-    lo = std::min(lo, b.pressure);
-    hi = std::max(hi, b.pressure);
-  }
-  return std::max(hi - lo, s.box.pressure_jump.cwiseAbs().maxCoeff());
 }
 
 /// C = dx/dt, and what set it.

@@ -119,7 +119,8 @@ TEST_F(OutputTest, ARestartMayHaveALaterEnd) {
   EXPECT_NEAR(last_time("out/points.csv"), 10.0, 0.04);  // an interval is 0.039 s
   folder_.write("scene.toml",
                 test::replaced(kScene, "velocity_scale = 0.01", "velocity_scale = 0.02"));
-  expect_end(run("--restart --until 10"), 2, {"of another scene", "fluid.velocity_scale: 0.01 then, 0.02 now"});
+  expect_end(run("--restart --until 10"), 2,
+             {"of another scene", "fluid.velocity_scale: 0.01 then, 0.02 now"});
 }
 
 TEST_F(OutputTest, ACheckpointThatIsNoFileIsRefused) {

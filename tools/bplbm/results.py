@@ -79,6 +79,11 @@ class Run:
         with h5py.File(self.folder / "fields.h5") as f:
             return {key: f[name][key][...] for key in f[name]}
 
+    def flux(self, name):
+        """Mean flux of a frame through the box [m/s], its components; exact in steady flow, covered cells or not."""
+        with h5py.File(self.folder / "fields.h5") as f:
+            return [f[name].attrs[f"flux_{axis}"] for axis in "xyz" if f"flux_{axis}" in f[name].attrs]
+
     def save(self, figure, name):
         """Writes a picture into the folder, and closes its figure."""
         from matplotlib import pyplot

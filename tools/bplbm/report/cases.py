@@ -248,12 +248,9 @@ def spin_torque(run, module):
 
 def dense_drag(run, module):
     """F/(mu U) [1 in two dimensions, m in three]. The mean flux U is that of all cells, since there may be no section
-    without covered ones: half of the body force's impulse is in the velocity that a run writes, and in steady flow the
-    bodies take it again, but for bounce-back, where it is on the fluid's cells alone. Fluid inside of a body may ring
-    from one step to the next, so it is the mean of two steps."""
-    p = run.parameters
-    frames = [run.frame(name)["velocity"][..., 0].astype(float) for _, name in run.frames()[-2:]]
-    u = sum(frames) / 2
+    without covered ones. Fluid inside of a body may ring from one step to the next, so it is the mean of two steps."""
+    p, names = run.parameters, [name for _, name in run.frames()[-2:]]
+    u = sum(run.frame(name)["velocity"][..., 0].astype(float) for name in names) / 2
     force = read_table(run.folder / "obstacles.csv")["fx"][-1]
     overlay = tomllib.loads((run.folder / "overlay.toml").read_text())
     if "bounce_back" in overlay["numerics"].get("scheme", ""):
@@ -262,7 +259,7 @@ def dense_drag(run, module):
         far = sum((x - c)**2 for x, c in zip(cells, body["centre"], strict=True))
         flux = u[far > body["diameter"]**2 / 4].sum() / u.size
     else:
-        flux = u.mean() - 0.5 * 1e-3 * p["time_step"]
+        flux = sum(run.flux(name)[0] for name in names) / 2
     return force / (p["depth"] if u.ndim == 2 else 1.0) / (p["density"] * p["kinematic_viscosity"] * flux)
 
 
