@@ -161,7 +161,7 @@ def dense_rows(full, dimension, diameter, cells, end):
                 places = [{"obstacle": [sphere_at(n, place, diameter)],
                            "numerics": {**numerics, "cell": 1e-3 / n, "time_step": step},
                            "run": {"end_time": (steps - 0.5) * step, "steady_below": 0.0},  # halves: so that rounding plays no part
-                           "output": {"fields_every": (steps - 2.5) * step, "probe_every": end / 40}}
+                           "output": {"fields_every": (steps - 1.5) * step, "probe_every": end / 40}}
                           for place in (PLACES if dimension == 2 else SPHERE_PLACES)]
                 yield Choice(label, family, f"D/h {1e3 * diameter * n:.1f}, τ {tau}", places)
 
