@@ -242,12 +242,14 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   const auto nx = static_cast<std::size_t>(n[0]);
   std::vector<double> rho(nx), u[3];
   for (auto& component : u) component.assign(nx, 0.0);
-  Vec3 arrived = Vec3::Zero();
+  std::vector<float> arrived;  // momentum [nz][ny][nx][3]
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y) {
       fluid.row(y, z, rho, {u[0], u[1], u[2]});
       for (int x = 0; x < n[0]; ++x) {
-        if (fluid.cover()) arrived += fluid.arrived_momentum(x, y, z);
+        if (fluid.cover())
+          for (const double component : fluid.arrived_momentum(x, y, z))
+            arrived.push_back(static_cast<float>(component));
         frame.pressure.push_back(static_cast<float>((rho[x] - 1.0) * plan_.units.pressure()));
         for (const auto& component : u)
           frame.velocity.push_back(static_cast<float>(component[x] * plan_.units.velocity()));
@@ -255,10 +257,12 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
           frame.solid_fraction.push_back(static_cast<float>(fluid.solid_fraction(x, y, z)));
       }
     }
-  if (fluid.cover()) {
-    ranks_.sum({arrived.data(), 3});
+  if (fluid.cover()) {  // summed in the order of the box: the same on any number of ranks
+    arrived = ranks_.gather(std::move(arrived), 3);
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < arrived.size(); ++i) sum[static_cast<int>(i % 3)] += arrived[i];
     const double cells = static_cast<double>(frame.nx) * frame.ny * frame.nz;
-    frame.flux = arrived / cells * plan_.units.velocity();
+    frame.flux = sum / cells * plan_.units.velocity();
   }
   frame.pressure = ranks_.gather(std::move(frame.pressure), 1);
   frame.velocity = ranks_.gather(std::move(frame.velocity), 3);
