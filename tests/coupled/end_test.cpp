@@ -38,11 +38,7 @@ class Scene : public SettlingDisc {
 };
 
 void expect_end(const JobResult& job, int exit_code, const std::vector<std::string>& words) {
-  EXPECT_FALSE(job.timed_out) << "hangs: " << job.output;
-  EXPECT_LT(job.seconds, kLimit) << job.output;
-  EXPECT_EQ(job.exit_code, exit_code) << job.output;
-  for (const auto& word : words)
-    EXPECT_NE(job.output.find(word), std::string::npos) << word << " not in:\n" << job.output;
+  test::expect_end(job, kLimit, exit_code, words);
 }
 
 // ---- a solid that leaves -----------------------------------------------------------------------

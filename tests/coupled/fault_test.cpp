@@ -17,11 +17,7 @@ constexpr double kLimit = 10.0 * BPLBM_PATIENCE;
 const std::string kPeer = test::kBin + "/scripted_peer";
 
 void expect_end(const JobResult& job, int exit_code, const std::vector<std::string>& words) {
-  EXPECT_FALSE(job.timed_out) << "hangs: " << job.output;
-  EXPECT_LT(job.seconds, kLimit) << job.output;
-  EXPECT_EQ(job.exit_code, exit_code) << job.output;
-  for (const auto& word : words)
-    EXPECT_NE(job.output.find(word), std::string::npos) << word << " not in:\n" << job.output;
+  test::expect_end(job, kLimit, exit_code, words);
 }
 
 // ---- the two disagree: refusal, exit 2, the same text on both sides

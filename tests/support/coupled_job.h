@@ -2,7 +2,10 @@
 /// Coupled jobs of the real programs, as the tests start them.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
+#include <vector>
 
 #include "tests/support/job.h"
 
@@ -37,6 +40,16 @@ inline std::string whole_script() {
     script.replace(at, end - at, read_file(kCase + script.substr(path, end - path)));
   }
   return script;
+}
+
+/// A job ended by itself within `limit` seconds, with an exit code, and said all of the words.
+inline void expect_end(const JobResult& job, double limit, int exit_code,
+                       const std::vector<std::string>& words) {
+  EXPECT_FALSE(job.timed_out) << "hangs: " << job.output;
+  EXPECT_LT(job.seconds, limit) << job.output;
+  EXPECT_EQ(job.exit_code, exit_code) << job.output;
+  for (const auto& word : words)
+    EXPECT_NE(job.output.find(word), std::string::npos) << word << " not in:\n" << job.output;
 }
 
 /// A folder with the settling disc's scene at ten cells a diameter, short, to be changed at will.
