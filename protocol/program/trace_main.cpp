@@ -99,6 +99,10 @@ int cut(const std::string& path, const std::string& out, std::int64_t intervals)
 /// Drawing is Python's: the process becomes it.
 int plot(const std::string& path, const std::string& out, std::int64_t particle) {
   const Trace trace(path);  // a sentence of ours where it is none
+#ifndef BPLBM_SOURCE_DIR
+#define BPLBM_SOURCE_DIR ""
+  throw std::runtime_error("plot is not part of the library: use tools/trace_plot.py of BPLBM");
+#endif
   const std::string id = std::to_string(particle);
   execl("/usr/bin/python3", "python3", BPLBM_SOURCE_DIR "/tools/trace_plot.py", path.c_str(),
         out.c_str(), id.c_str(), nullptr);

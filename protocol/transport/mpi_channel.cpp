@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/transport/mpi_channel.h"
 
-#include <fmt/format.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 #include "protocol/wire/numbers.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -117,7 +117,7 @@ class MpiChannel final : public Channel {
   static int length(const Bytes& frame) {
     if (frame.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
       throw ProtocolError(
-          fmt::format("a message of {} bytes exceeds MPI's 2 GiB: use more ranks", frame.size()));
+          format("a message of {} bytes exceeds MPI's 2 GiB: use more ranks", frame.size()));
     return static_cast<int>(frame.size());
   }
 
@@ -130,7 +130,7 @@ class MpiChannel final : public Channel {
     return frame;
   }
 
-  /// @throws PeerFault, or ProtocolError where a signal has come
+  /// @throws PeerFault, or ProgramError where a signal has come
   void throw_if_stopped() {
     throw_if_signalled();
     if (const Fault* fault = hear_urgent()) throw PeerFault(*fault);
@@ -155,12 +155,12 @@ class MpiChannel final : public Channel {
   /// After its farewell a rank sends nothing more; what it sent before may still be on its way.
   void throw_if_left(int remote, const Wait& wait) const {
     if (left_[remote] && Clock::now() - *left_[remote] > kOnItsWay)
-      throw PeerLeft(fmt::format("{} rank {} left without {}", remote_name(), remote, wait.what));
+      throw PeerLeft(format("{} rank {} left without {}", remote_name(), remote, wait.what));
   }
 
   [[noreturn]] void give_up(int remote, const Wait& wait) const {
     const std::string silent = silent_ranks(), text = timeout_text(*this, remote, wait);
-    throw Timeout(silent.empty() ? text : fmt::format("{} ({})", silent, text));
+    throw Timeout(silent.empty() ? text : format("{} ({})", silent, text));
   }
 
   /// The frames stay alive with the channel: the program is about to end, nobody waits for them.
@@ -212,13 +212,13 @@ std::vector<std::uint32_t> exchange_roles(Role role, double seconds) {
     for (int r = 0; r < size; ++r) {
       int done = 0;
       MPI_Request_get_status(receives[r], &done, MPI_STATUS_IGNORE);
-      if (!done) silent += fmt::format(" {}", r);
+      if (!done) silent += format(" {}", r);
     }
     throw Timeout(
-        fmt::format("rank(s){} of this MPI job did not say within {:.3g} s that they are 'lbm' or "
-                    "our 'liggghts'; the system's stock liggghts cannot couple: give the absolute "
-                    "path of build/release/bin/liggghts",
-                    silent, seconds));
+        format("rank(s){} of this MPI job did not say within {:.3g} s that they are 'lbm' or "
+               "our 'liggghts'; the system's stock liggghts cannot couple: give the absolute "
+               "path of build/release/bin/liggghts",
+               silent, seconds));
   }
   return roles;
 }
