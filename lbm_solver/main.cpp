@@ -14,12 +14,12 @@
 #include "lbm_solver/coupling/run.h"
 #include "lbm_solver/io/output_folder.h"
 #include "lbm_solver/io/scene_reader.h"
-#include "protocol/command_line.h"
-#include "protocol/mpi_channel.h"
-#include "protocol/numbers.h"
-#include "protocol/program.h"
-#include "protocol/trace.h"
-#include "protocol/watch.h"
+#include "protocol/program/command_line.h"
+#include "protocol/program/program.h"
+#include "protocol/program/watch.h"
+#include "protocol/transport/mpi_channel.h"
+#include "protocol/transport/trace.h"
+#include "protocol/wire/numbers.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "protocol/errors.h"
+#include "protocol/wire/errors.h"
 
 namespace lbm {
 

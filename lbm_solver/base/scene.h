@@ -12,7 +12,7 @@
 
 #include "lbm_solver/base/side.h"
 #include "lbm_solver/base/units.h"
-#include "protocol/messages.h"
+#include "protocol/wire/messages.h"
 
 namespace lbm {
 

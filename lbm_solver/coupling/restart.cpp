@@ -11,8 +11,8 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/checkpoint.h"
-#include "protocol/checksum.h"
-#include "protocol/solid_parts.h"
+#include "protocol/program/checksum.h"
+#include "protocol/program/solid_parts.h"
 
 namespace lbm {
 namespace {

@@ -11,9 +11,9 @@
 #include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/io/checkpoint.h"
-#include "protocol/program.h"
-#include "protocol/solid_parts.h"
-#include "protocol/walls.h"
+#include "protocol/program/program.h"
+#include "protocol/program/solid_parts.h"
+#include "protocol/wire/walls.h"
 
 namespace lbm {
 namespace {

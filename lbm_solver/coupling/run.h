@@ -6,7 +6,7 @@
 
 #include "lbm_solver/coupling/observers.h"
 #include "lbm_solver/coupling/restart.h"
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 

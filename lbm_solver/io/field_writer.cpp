@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "protocol/hdf5_file.h"
+#include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 

@@ -12,8 +12,8 @@
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
-#include "protocol/checksum.h"
-#include "protocol/input_file.h"
+#include "protocol/program/checksum.h"
+#include "protocol/program/input_file.h"
 
 namespace lbm {
 namespace {

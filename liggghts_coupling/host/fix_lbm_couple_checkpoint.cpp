@@ -19,8 +19,8 @@
 #include "liggghts_coupling/bond/bond_ledger.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
-#include "protocol/file_catcher.h"
-#include "protocol/program.h"
+#include "protocol/program/file_catcher.h"
+#include "protocol/program/program.h"
 
 namespace dem {
 

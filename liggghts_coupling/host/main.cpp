@@ -23,9 +23,9 @@
 #include "liggghts_coupling/host/register_styles.h"
 #include "liggghts_coupling/host/screen_ear.h"
 #include "liggghts_coupling/host/script_names.h"
-#include "protocol/input_file.h"
-#include "protocol/program.h"
-#include "protocol/watch.h"
+#include "protocol/program/input_file.h"
+#include "protocol/program/program.h"
+#include "protocol/program/watch.h"
 
 namespace dem {
 

@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-#include "protocol/errors.h"
+#include "protocol/wire/errors.h"
 
 namespace dem {
 namespace {

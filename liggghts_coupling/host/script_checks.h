@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/overlap.h"
+#include "protocol/wire/overlap.h"
 
 namespace dem {
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <sstream>
 
-#include "protocol/trace_compare.h"
+#include "protocol/transport/trace_compare.h"
 #include "tests/support/coupled_job.h"
 
 namespace {

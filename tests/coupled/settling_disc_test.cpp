@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "protocol/trace_compare.h"
+#include "protocol/transport/trace_compare.h"
 #include "tests/support/coupled_job.h"
 
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "protocol/input_file.h"
-#include "protocol/numbers.h"
+#include "protocol/program/input_file.h"
+#include "protocol/wire/numbers.h"
 #include "tests/support/job.h"
 
 namespace {

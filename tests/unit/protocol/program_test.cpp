@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/program.h"
+#include "protocol/program/program.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

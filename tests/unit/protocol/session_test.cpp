@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <future>
 #include <limits>
 
-#include "protocol/memory_channel.h"
+#include "protocol/transport/memory_channel.h"
 #include "tests/unit/protocol/samples.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/solid_parts.h"
+#include "protocol/program/solid_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "protocol/errors.h"
-#include "protocol/file_catcher.h"
+#include "protocol/program/file_catcher.h"
+#include "protocol/wire/errors.h"
 #include "tests/support/job.h"
 
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/trace.h"
+#include "protocol/transport/trace.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "protocol/trace_compare.h"
+#include "protocol/transport/trace_compare.h"
 #include "tests/support/job.h"
 #include "tests/unit/protocol/samples.h"
 

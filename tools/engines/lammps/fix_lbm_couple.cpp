@@ -21,8 +21,8 @@
 #include <string>
 #include <utility>
 
-#include "protocol/file_catcher.h"
-#include "protocol/numbers.h"
+#include "protocol/program/file_catcher.h"
+#include "protocol/wire/numbers.h"
 
 namespace engine {
 

@@ -12,13 +12,13 @@
 #include <map>
 #include <numbers>
 
-#include "protocol/codec.h"
-#include "protocol/mpi_channel.h"
-#include "protocol/numbers.h"
-#include "protocol/program.h"
-#include "protocol/session.h"
-#include "protocol/solid_parts.h"
-#include "protocol/watch.h"
+#include "protocol/program/program.h"
+#include "protocol/program/solid_parts.h"
+#include "protocol/program/watch.h"
+#include "protocol/transport/mpi_channel.h"
+#include "protocol/wire/codec.h"
+#include "protocol/wire/numbers.h"
+#include "protocol/wire/session.h"
 
 namespace {
 

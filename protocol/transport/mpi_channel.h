@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <mpi.h>
+
+#include <memory>
+
+#include "protocol/wire/channel.h"
+
+namespace protocol {
+
+/// The communicators of one coupled MPI job.
+struct World {
+  MPI_Comm local = MPI_COMM_NULL;   ///< the ranks of this program
+  MPI_Comm remote = MPI_COMM_NULL;  ///< intercommunicator to the partner; null when alone
+  int partner_ranks = 0;
+  bool coupled() const { return partner_ranks > 0; }
+};
+
+/// Finds out which ranks of MPI_COMM_WORLD are fluid and which solid, in any order and number, and
+/// builds the communicators. Uses only polled point-to-point messages until everybody has answered,
+/// so that a program that does not know this protocol cannot hang it.
+/// @param seconds  patience; negative: BPLBM_CONNECT_TIMEOUT or 5 s
+/// @throws Timeout naming the ranks that did not answer
+World connect(Role role, double seconds = -1.0);
+
+/// Frees the communicators, where the process goes on to another connection. A program that ends
+/// leaves them to MPI: see `finish` in program.h.
+void disconnect(World& world);
+
+/// A channel over the intercommunicator of `world`.
+std::unique_ptr<Channel> make_mpi_channel(const World& world, Role role);
+
+}  // namespace protocol
