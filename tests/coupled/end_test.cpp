@@ -22,7 +22,7 @@ constexpr double kTimeout = 2.0;                             // of the scenes he
 constexpr double kLimit = kTimeout + 10.0 * BPLBM_PATIENCE;  // for both programs to end
 const std::string kPeer = test::kBin + "/scripted_peer solid leave ";
 const std::string kPython =
-    "env PYTHONPATH=" BPLBM_SOURCE_DIR "/tools/engines/python /usr/bin/python3 " BPLBM_SOURCE_DIR
+    "env PYTHONPATH=" BPLBM_SOURCE_DIR "/protocol/python /usr/bin/python3 " BPLBM_SOURCE_DIR
     "/tests/support/leaving_peer.py ";
 
 /// A short run with a short time-out.
@@ -77,8 +77,8 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
   std::vector<std::pair<const Stage*, std::future<JobResult>>> jobs;
   for (const Stage& stage : kStages) {
     const bool python = peer == kPython;
-    if (python && (stage.name == "hello" || stage.name == "goodbye" || stage.name == "version"))
-      continue;  // wire.py knows no goodbye, and says its hello and its answer at once
+    if (python && (stage.name == "hello" || stage.name == "version"))
+      continue;  // bplbm_solid says its hello and its answer at once
     jobs.emplace_back(&stage, std::async(std::launch::async, [&stage, &peer = peer, &how = how] {
       const Scene scene;
       return test::run(scene.job(peer + stage.name + " " + how), scene.folder(), 30.0);
@@ -106,6 +106,14 @@ INSTANTIATE_TEST_SUITE_P(All, LeavingSolid,
                                          Leaving{"PythonByExit", kPython, "exit"},
                                          Leaving{"PythonWithFarewell", kPython, "farewell"}),
                          [](const auto& info) { return info.param.name; });
+
+// A Python engine that leaves its `with` block, without a word, says goodbye.
+TEST(PythonBlock, SaysGoodbyeWhenItIsLeft) {
+  const Scene scene;
+  for (const int ranks : {1, 2})
+    expect_end(test::run(scene.job(kPython + "block farewell", ranks), scene.folder(), 30.0), 0,
+               {"ending       stopped by solid: leaving_peer ended"});
+}
 
 TEST(LeavingFluid, EndsLiggghts) {
   Scene scene;
