@@ -61,7 +61,7 @@ class Comparison {
       add("checkpoints: the fluid's scene wants them (run.checkpoint_every), '{}' cannot write any",
           s_.program);
     if ((f_.features & ~s_.features & ~kCheckpoints) != 0)
-      add("protocol features: fluid {:#x}, solid {:#x}", f_.features, s_.features);
+      add("protocol features: fluid 0x{:x}, solid 0x{:x}", f_.features, s_.features);
   }
 
   void geometry() {

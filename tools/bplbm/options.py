@@ -58,7 +58,7 @@ def parser():
     p.add_argument("--fluid-ranks", type=whole, default=1, metavar="N")
     p.add_argument("--solid-ranks", type=whole, default=1, metavar="M")
     p.add_argument("--threads", type=whole, default=1, metavar="T", help=f"of the fluid; at most {MOST_THREADS}")
-    p.add_argument("--engine", default="liggghts", choices=["liggghts", "lammps", "reference", "python"],
+    p.add_argument("--engine", default="liggghts", choices=["liggghts", "lammps", "reference", "python", "c", "fortran"],
                    help="who moves the particles; the last two suit free discs")
     p.add_argument("--until", type=seconds, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")

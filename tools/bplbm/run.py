@@ -42,8 +42,8 @@ def solid_command(args, out):
     """The program that moves the particles; nothing for a fluid alone."""
     if not args.scene.is_coupled:
         return []
-    if args.engine == "reference":
-        return [str(BIN / "reference_engine")]
+    if args.engine in ("reference", "c", "fortran"):
+        return [str(BIN / f"{args.engine}_engine")]
     if args.engine == "python":
         return ["/usr/bin/python3", str(TOOLS / "engines" / "python" / "engine.py")]
     script = args.scene.script(args.engine)
