@@ -3,15 +3,16 @@ document, and nothing else does."""
 
 import pathlib
 import re
+import subprocess
 import sys
 
-from bplbm.project import ROOT
+from bplbm.project import BIN, ROOT
 
 CALL = re.compile(r'\b(?:number|number_or|numbers_or|optional_number|integer|optional_integer|flag_or|choice_or|text_or|text|'
                   r'vector|vector_or_zero|vectors_or_none|range|table|optional_table|tables)\(\s*"(\w+)"'
                   r'|\b\w+\(t, "(\w+)"')
 WORD = re.compile(r'\b(?:word|key) == "(\w+)"|\bregister\w+\("(\w+)"')  # of a fix; of a pair style
-COMMANDS = "liggghts_coupling/docs/commands.md"
+COMMANDS, SCENE = "liggghts_coupling/docs/commands.md", "lbm_solver/docs/scene.md"
 
 
 def read(path):
@@ -38,7 +39,7 @@ def first_column(text):
 
 def scene_keys():
     return found(CALL, read("lbm_solver/io/scene_reader.cpp")), \
-        first_column(section("lbm_solver/docs/scene.md", "## Keys of a scene")) - {"NAME"}
+        first_column(section(SCENE, "## Keys of a scene")) - {"NAME"}
 
 
 def script_variables():
@@ -88,9 +89,29 @@ def tabled_words():
     return shown, tabled
 
 
+def table_of_keys():
+    """The table of all keys as lbm prints it."""
+    return subprocess.run([str(BIN / "lbm"), "--keys"], capture_output=True, text=True, check=True).stdout
+
+
+def documented_table():
+    """The same as the document has it, with the text before and after."""
+    text = read(SCENE)
+    start = text.index("| key |", text.index("## Keys of a scene"))
+    end = text.index("\n\n", start) + 1
+    return text[:start], text[start:end], text[end:]
+
+
+def write_table():
+    before, _, after = documented_table()
+    (ROOT / SCENE).write_text(before + table_of_keys() + after)
+
+
 def main():
+    if sys.argv[1:] == ["--write"]:  # the table of keys, from the program that is built
+        write_table()
     wrong = 0
-    for what, where, (code, text) in (("key", "lbm_solver/docs/scene.md", scene_keys()), ("variable", COMMANDS, script_variables()),
+    for what, where, (code, text) in (("key", SCENE, scene_keys()), ("variable", COMMANDS, script_variables()),
                                       ("command", COMMANDS, commands()), ("word", COMMANDS, words_of_commands()),
                                       ("word of a table", f"the tables of {COMMANDS}", tabled_words()),
                                       ("property", COMMANDS, properties())):
