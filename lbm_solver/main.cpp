@@ -13,6 +13,7 @@
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/coupling/run.h"
 #include "lbm_solver/io/output_folder.h"
+#include "lbm_solver/io/scene_keys.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "protocol/program/command_line.h"
 #include "protocol/program/program.h"
@@ -34,7 +35,7 @@ struct Options {
   std::string record, progress = "auto";
   std::vector<int> grid;
   int threads = 0;
-  bool force = false, check = false, liggghts_vars = false, list = false;
+  bool force = false, check = false, liggghts_vars = false, list = false, keys = false;
 };
 
 void add_scene(CLI::App& app, Options& o) {
@@ -72,6 +73,7 @@ void define(CLI::App& app, Options& o) {
   app.add_option("--set", o.run.set, "name of the parameter set, for the summary");
   app.add_option("--variant", o.run.variant, "name of the variant, for the summary");
   app.add_flag("--list", o.list, "lattices, operators, terms and schemes that a scene may name");
+  app.add_flag("--keys", o.keys, "every key of a scene with type, unit, default, range, meaning");
   add_scene(app, o);
   auto* check = app.add_subcommand("check", "look at a scene without running it");
   check->add_flag("--liggghts-vars", o.liggghts_vars, "print the -var options for LIGGGHTS");
@@ -209,8 +211,8 @@ int main(int argc, char** argv) {
       "Lattice Boltzmann fluid of a coupled job: mpirun -np 1 lbm SCENE : -np 1 liggghts -in FILE"};
   define(app, options);
   if (const auto code = protocol::read_command_line(app, "lbm", argc, argv)) return *code;
-  if (options.list) {
-    fmt::print("{}", describe_choices());
+  if (options.list || options.keys) {
+    fmt::print("{}", options.keys ? describe_keys() : describe_choices());
     return protocol::kOk;
   }
   if (options.check) try {

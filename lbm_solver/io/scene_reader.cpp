@@ -289,13 +289,10 @@ InitialScene read_initial(TableReader t, int d) {
   return i;
 }
 
-}  // namespace
-
-Scene read_scene(const std::vector<std::string>& files) {
-  toml::table merged = parse(files.front());
-  for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
+Scene read_tables(const toml::table& merged, const std::vector<std::string>& files,
+                  KeyNotes* keys) {
   Scene scene;
-  TableReader root(merged, "", files.front(), &scene.settings);
+  TableReader root(merged, "", files.front(), &scene.settings, keys);
   scene.file = fmt::format("{}", fmt::join(files, " + "));
   scene.title = root.text_or("title", std::filesystem::path(files.front()).stem().string());
   scene.box = read_box(root.table("box"));
@@ -324,6 +321,18 @@ Scene read_scene(const std::vector<std::string>& files) {
   output.finish();
   root.finish();
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::vector<std::string>& files) {
+  toml::table merged = parse(files.front());
+  for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
+  return read_tables(merged, files, nullptr);
+}
+
+void note_keys(const std::string& scene, KeyNotes& keys) {
+  read_tables(toml::parse(scene), {"the reader's own example"}, &keys);
 }
 
 }  // namespace lbm

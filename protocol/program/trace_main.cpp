@@ -96,12 +96,26 @@ int cut(const std::string& path, const std::string& out, std::int64_t intervals)
   return 0;
 }
 
+/// tools/trace_plot.py of a checkout (build/PRESET/bin beside tools) or of an installed tree
+/// (PREFIX/lib/bplbm/bin beside PREFIX/share/bplbm/tools).
+std::string plot_script() {
+  const auto root = std::filesystem::canonical("/proc/self/exe") / "../../../..";
+  for (const char* tools : {"tools", "share/bplbm/tools"})
+    if (const auto script = (root / tools / "trace_plot.py").lexically_normal();
+        std::filesystem::exists(script))
+      return script.string();
+  throw std::runtime_error(
+      "trace_plot.py is not beside this program; start it where it was "
+      "built or installed");
+}
+
 /// Drawing is Python's: the process becomes it.
 int plot(const std::string& path, const std::string& out, std::int64_t particle) {
   const Trace trace(path);  // a sentence of ours where it is none
   const std::string id = std::to_string(particle);
-  execl("/usr/bin/python3", "python3", BPLBM_SOURCE_DIR "/tools/trace_plot.py", path.c_str(),
-        out.c_str(), id.c_str(), nullptr);
+  const std::string script = plot_script();
+  execl("/usr/bin/python3", "python3", script.c_str(), path.c_str(), out.c_str(), id.c_str(),
+        nullptr);
   throw std::runtime_error("/usr/bin/python3 cannot be started; tools/install installs it");
 }
 

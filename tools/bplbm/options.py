@@ -7,7 +7,7 @@ import shlex
 import shutil
 import sys
 
-from bplbm.project import ROOT
+from bplbm.project import home, tool
 from bplbm.scenes import Unknown, find, scenes
 
 BAD_INPUT = 2
@@ -47,11 +47,11 @@ def seconds(text):
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        fail(f"{message}; see tools/run --help")
+        fail(f"{message}; see {tool('run')} --help")
 
 
 def parser():
-    p = Parser(prog="tools/run", description="Runs a scene and draws its pictures.", allow_abbrev=False)
+    p = Parser(prog=tool("run"), description="Runs a scene and draws its pictures.", allow_abbrev=False)
     p.add_argument("scene", nargs="?", help="name of a folder in cases/, or the path of a scene's folder or scene.toml")
     p.add_argument("--list", action="store_true", help="scenes with their sets and variants")
     p.add_argument("--set", default="resolved", help="parameter set: resolved, literal, fine")
@@ -90,7 +90,7 @@ def arguments(words):
     args, rest = options.parse_known_args(words)
     args.words = list(words)
     if not args.scene and rest:
-        fail(f"no option '{rest[0]}' without a scene; see tools/run --help")
+        fail(f"no option '{rest[0]}' without a scene; see {tool('run')} --help")
     if not args.scene:
         return args
     try:
@@ -145,7 +145,7 @@ def refuse_clashes(scene, options):
     """An overlay KEY-VALUE.toml whose KEY is an option of ours could never be chosen."""
     for key, values in scene.options().items():
         if f"--{key}" in options._option_string_actions:  # argparse has no other way to ask
-            fail(f"{scene.folder / f'{key}-{values[0]}.toml'}: --{key} is an option of tools/run, so this overlay cannot be "
+            fail(f"{scene.folder / f'{key}-{values[0]}.toml'}: --{key} is an option of {tool('run')}, so this overlay cannot be "
                  f"chosen; rename it, e.g. to my_{key}-{values[0]}.toml for --my_{key} {values[0]}")
 
 
@@ -155,7 +155,7 @@ def own_choices(scene, words):
     while rest:
         key, value = rest.pop(0), rest.pop(0) if rest else ""
         if not key.startswith("--") or key[2:] not in known:
-            fail(f"{scene.name} knows no '{key}'; see tools/run --help"
+            fail(f"{scene.name} knows no '{key}'; see {tool('run')} --help"
                  + "".join(f", and --{k} {'|'.join(v)}|all" for k, v in known.items()))
         if value != "all" and value not in known[key[2:]]:
             fail(f"{key} of {scene.name} is one of: {', '.join(known[key[2:]])}, all")
@@ -170,9 +170,9 @@ def label(args):
 
 
 def out_folder(args):
-    """out/SCENE… of the project for a scene of cases/, of the current folder for one elsewhere."""
+    """out/SCENE… of the checkout for a scene of cases/, else of the current folder."""
     parts = [args.scene.name] + ([args.set] if args.set != "resolved" else []) + ([label(args)] if label(args) else [])
-    return (ROOT if args.scene.shipped else pathlib.Path.cwd()) / "out" / "-".join(parts)
+    return (home() if args.scene.shipped else pathlib.Path.cwd()) / "out" / "-".join(parts)
 
 
 def scene_files(args):

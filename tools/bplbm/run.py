@@ -17,7 +17,7 @@ import time
 from bplbm import output_folder, solid_alone
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
-from bplbm.project import BIN, TOOLS
+from bplbm.project import BIN, INSTALLED, TOOLS, missing_cpu_features, tool
 
 OUT_OF_TOLERANCE = 4
 FAULT = 1
@@ -208,21 +208,32 @@ def study(args, runs, out):
     return 0
 
 
+def check_programs(args):
+    """Refuses a run whose programs are not there, or were compiled for another processor."""
+    if missing := missing_cpu_features():
+        fail(f"these programs were compiled for a processor with {', '.join(missing)}, which this machine lacks; "
+             "install a package for this processor, or build from the sources")
+    if (args.no_build or INSTALLED) and not (BIN / "lbm").exists():
+        what = "install the package again" if INSTALLED else "leave --no-build out, or run tools/build"
+        fail(f"{BIN / 'lbm'} is missing: {what}")
+    if args.engine in ("lammps", "reference") and INSTALLED and not (BIN / f"{args.engine}_engine").exists():
+        fail(f"--engine {args.engine} is not part of the package; build BPLBM from its sources for it")
+    if shutil.which("mpirun") is None:
+        fail(f"mpirun not found; {'install openmpi-bin' if INSTALLED else 'run tools/install'}")
+
+
 def main():
     args = arguments(sys.argv[1:])
     if args.list:
         list_scenes()
         return 0
     if not args.scene:
-        fail("which scene? tools/run --list shows them")
+        fail(f"which scene? {tool('run')} --list shows them")
     out = output_folder.resolved(args.out or out_folder(args))
     if args.look:
         take_folder(args, out, look=True)
         return 0
-    if args.no_build and not (BIN / "lbm").exists():
-        fail(f"{BIN / 'lbm'} is missing: leave --no-build out, or run tools/build")
-    if shutil.which("mpirun") is None:
-        fail("mpirun not found; run tools/install")
+    check_programs(args)
     others = comparison_runs(args)
     hold = take_folder(args, out)
     before = output_folder.files(out)

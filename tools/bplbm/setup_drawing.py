@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from bplbm import pictures  # noqa: F401  (its style)
+from bplbm.project import INSTALLED, tool
 from bplbm.reading import read_table
 from bplbm.scene_words import COLOR, drive_text, side_line, words
 from bplbm.scenes import Unknown, find, scenes
@@ -106,9 +107,10 @@ def figure_of(scene, folder):
 
 
 def draw(scene):
-    """Writes the picture of a Scene into its folder. Returns its path."""
+    """Writes the picture of a Scene into its folder, of an installed one into the current folder. Returns its path."""
     figure = figure_of(checked(scene.tables()), scene.folder)
-    path = scene.folder / "pictures" / "setup.png"
+    mine = not (INSTALLED and scene.shipped)
+    path = scene.folder / "pictures" / "setup.png" if mine else pathlib.Path.cwd() / f"{scene.name}-setup.png"
     path.parent.mkdir(exist_ok=True)
     figure.savefig(path, bbox_inches="tight")
     plt.close(figure)
@@ -116,7 +118,7 @@ def draw(scene):
 
 
 def main():
-    p = argparse.ArgumentParser(prog="tools/draw_setup", description=__doc__.splitlines()[0])
+    p = argparse.ArgumentParser(prog=tool("draw_setup"), description=__doc__.splitlines()[0])
     p.add_argument("scenes", nargs="*", metavar="SCENE", help="names of cases/, or paths of scenes")
     p.add_argument("--list", action="store_true", help="the scenes, and nothing else")
     args = p.parse_args()

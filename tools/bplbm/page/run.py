@@ -14,7 +14,7 @@ from bplbm.page import flow, histories
 from bplbm.page.html import Cell, page, section, table
 from bplbm.page.picture import data_url
 from bplbm.page.setup import setup
-from bplbm.project import ROOT
+from bplbm.project import ROOT, tool
 from bplbm.quantities import default_quantities
 from bplbm.results import Run
 from bplbm.toml_text import read_laid_over, toml
@@ -123,7 +123,7 @@ def how(run, tables, scene, words, line):
     """How to run it again."""
     versions = ", ".join(f"{name} {version}" for name, version in run.summary["versions"].items())
     script = scene.script("liggghts")
-    return (f"<pre>tools/run {html.escape(shlex.join(words))}</pre>"
+    return (f"<pre>{tool('run')} {html.escape(shlex.join(words))}</pre>"
             f'<p class="soft">{html.escape(versions)} · commit {html.escape(commit())} · {html.escape(machine())}</p>',
             details("the command of the job", shlex.join(line)), details("scene.toml with its overlays", toml(tables)),
             details(script.name, script.read_text(errors="replace")) if script.is_file() else "")
