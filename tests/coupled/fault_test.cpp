@@ -227,20 +227,20 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Damage, FewerLoadsThanParticles) {
   const test::TemporaryFolder folder;
-  expect_end(
-      test::run(mpirun({kPeer + " fluid fewer"},
-                       {kLiggghts + " -in " BPLBM_SOURCE_DIR
-                                    "/tests/support/conformance.liggghts -screen none "
-                                    "-var boundary_x p -var boundary_y p -var x_lo 0 -var "
-                                    "x_hi 1 -var y_lo 0 -var y_hi 1 -var z_lo -0.5 -var z_hi "
-                                    "0.5 -var particles 1 -var particle1_x 0.5 -var "
-                                    "particle1_y 0.5 -var particle1_vx 0 -var particle1_vy 0 "
-                                    "-var particle1_interval 0 "
-                                    "-var diameter_max 0.1 -var density_max 1000 -var "
-                                    "contact_stiffness 1e5 -var solid_step 1e-3 -var substeps "
-                                    "10 -var solid_steps_total 100"}),
-                folder.path(), 30.0),
-      1, {"liggghts | error | fluid rank 0 answered 0 loads for 1 particles"});
+  expect_end(test::run(mpirun({kPeer + " fluid fewer"},
+                              {kLiggghts +
+                               " -in " BPLBM_SOURCE_DIR
+                               "/tools/engines/conformance/in.liggghts -screen none "
+                               "-var boundary_x p -var boundary_y p -var x_lo 0 -var "
+                               "x_hi 1 -var y_lo 0 -var y_hi 1 -var z_lo -0.5 -var z_hi "
+                               "0.5 -var particles 1 -var particle1_x 0.5 -var "
+                               "particle1_y 0.5 -var particle1_vx 0 -var particle1_vy 0 "
+                               "-var particle1_interval 0 -var particle1_until -1 -var depth 1 "
+                               "-var diameter_max 0.1 -var density_max 1000 -var "
+                               "contact_stiffness 1e5 -var solid_step 1e-3 -var substeps "
+                               "10 -var solid_steps_total 100"}),
+                       folder.path(), 30.0),
+             1, {"liggghts | error | fluid rank 0 answered 0 loads for 1 particles"});
 }
 
 TEST(Slow, APartnerThatTakesItsTimeIsWaitedFor) {
