@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/transport/trace_compare.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 #include <map>
 #include <stdexcept>
 #include <unordered_map>
+
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -71,7 +71,7 @@ std::vector<IntervalRecord> timeline(const Trace& trace) {
     for (const State& s : record.states) {
       const auto shape = shapes.find(s.id);
       if (shape == shapes.end())
-        throw std::runtime_error(fmt::format("the trace never tells the shape of {}", s.id));
+        throw std::runtime_error(format("the trace never tells the shape of {}", s.id));
       record.shapes.push_back(shape->second);
     }
     result.push_back(std::move(record));
@@ -109,7 +109,7 @@ void TraceComparison::vectors(std::int64_t interval, std::int64_t id, const char
                               const Vec3& a, const Vec3& b, double scale) {
   for (int k = 0; k < 3; ++k) {
     if (a[k] == b[k]) continue;
-    if (!first_) first_ = {interval, id, fmt::format("{}[{}]", field, k), a[k], b[k]};
+    if (!first_) first_ = {interval, id, format("{}[{}]", field, k), a[k], b[k]};
     const double relative = std::abs(a[k] - b[k]) / std::max(scale, 1e-300);
     largest_ = std::isfinite(relative) ? std::max(largest_, relative)
                                        : std::numeric_limits<double>::infinity();
@@ -152,7 +152,7 @@ void TraceComparison::loads(std::int64_t interval, std::span<const Load> a,
 
 std::string TraceComparison::text() const {
   if (!first_) return "identical, bit for bit";
-  return fmt::format(
+  return format(
       "first difference at interval {}, particle {}, {}: {:.17g} against {:.17g}; largest relative "
       "difference {:.3g}",
       first_->interval, first_->id, first_->field, first_->a, first_->b, largest_);
