@@ -215,7 +215,7 @@ class Bonds:
         self.stiffness = number("bond_stiffness", number("contact_stiffness"))
         self.strengths = number("bond_strength"), number("bond_shear_strength", number("bond_strength"))
         self.reach = 1 + number("bond_gap", 0.02) / 2
-        self.damping = number("numerical_damping", 0.0)  # YADE's own, the law has no dashpots
+        self.damping = number("numerical_damping", 0.3)  # YADE's own: the law has no dashpots, and bonds would ring
         # of equal balls: kn = young × radius, ks = poisson × kn
         self.material = y.CohFrictMat(density=grains.density, young=self.stiffness / grains.r, poisson=1.0,
                                       frictionAngle=math.atan(number("friction", 0.5)), isCohesive=True, fragile=True,
