@@ -82,9 +82,9 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
 }
 
 std::int64_t Observers::next_look(std::int64_t state) const {
-  if (obstacles_) return state + 1;  // their loads are summed in each
   std::int64_t next = (state / guard_every_ + 1) * guard_every_;
-  if (!scene_.output.points.empty()) next = std::min(next, probe_times_.next(state + 1));
+  if (obstacles_ || !scene_.output.points.empty())
+    next = std::min(next, probe_times_.next(state + 1));
   if (field_times_) next = std::min(next, field_times_->next(state + 1));
   return next;
 }

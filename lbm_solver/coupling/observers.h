@@ -65,7 +65,7 @@ class Observers {
   /// @throws NumericsError
   void after_interval(std::int64_t state, Fluid& fluid, const Particles* particles);
   /// After each fluid step: loads in the order of obstacle_bodies.
-  void add_loads(const Fluid& fluid, std::span<const BodyLoad> loads) {
+  void add_loads(Fluid& fluid, std::span<const BodyLoad> loads) {
     if (obstacles_) obstacles_->add(fluid, loads);
   }
   /// A fluid alone whose velocity no longer changes (run.steady_below).

@@ -11,6 +11,7 @@
 #include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/io/checkpoint.h"
+#include "lbm_solver/io/script_variables.h"
 #include "protocol/program/program.h"
 #include "protocol/program/solid_parts.h"
 #include "protocol/wire/walls.h"
@@ -71,6 +72,8 @@ RunStart start_of(const RunOptions& options, const Plan& plan, const Restart* re
   RunStart start;
   start.out = options.out;
   start.checkpoint = absolute(options.out + "/checkpoint");
+  if (const std::string problem = why_no_script_path(start.checkpoint); !problem.empty())
+    throw InputError("--out " + options.out, problem, "choose another folder");
   if (!restart) return start;
   start.interval = restart->interval;
   if (start.interval >= last_interval(plan, options))
@@ -126,6 +129,10 @@ class CoupledRun {
     for (const std::string& wall :
          protocol::one_sided_walls(make_hello(scene, plan, start_, ranks.cells()), partner_))
       log.say(start_.interval, "warning", "{}", wall);
+    if (!partner_.sides)
+      log.say(start_.interval, "coupling",
+              "{} does not tell its walls: they are not compared with the fluid's",
+              partner_.program);
     if (!restart) return;
     load_from(*restart, [&] {
       fluid_.load(restart->record.part("fluid"));
@@ -331,6 +338,13 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
                      keep_last ? fluid_part_before(options.out, "checkpoint") : "");
     keep_last = true;
   };
+  Fluid::AfterStep add_loads;
+  if (!scene.obstacles.empty())
+    add_loads = [&] {
+      clock.charge("sweep");
+      observers.add_loads(fluid, fluid.loads());
+      clock.charge("loads");
+    };
   for (std::int64_t step = first;; step = fluid.steps()) {
     const bool signalled = ranks.max(protocol::signalled() ? 1.0 : 0.0) > 0.0;
     if (signalled)
@@ -345,10 +359,8 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     if (last) break;
     std::int64_t next = std::min(observers.next_look(step), end);
     if (times.any()) next = std::min(next, times.next_checkpoint(step));
-    fluid.advance(next - step);
+    fluid.advance(next - step, add_loads);
     clock.charge("sweep");
-    if (!scene.obstacles.empty()) observers.add_loads(fluid, fluid.loads());
-    clock.charge("loads");
     observers.after_interval(next - 1, fluid, nullptr);
     clock.charge("output");
   }

@@ -125,8 +125,10 @@ std::map<std::string, std::string> read_variables(TableReader t) {
       t.fail(name, "is a name that the programs give a value of their own",
              "choose another name; lbm check --liggghts-vars lists those that are taken");
     if (const auto problem = why_no_variable(name, value); !problem.empty())
-      t.fail(name, "= \"" + value + "\" " + problem,
-             "a script variable is a word of letters, digits and _, and a number or a text");
+      t.fail(
+          name, "= \"" + value + "\" " + problem,
+          "a script variable is a word of letters, digits and _, its value a number or one word of "
+          "these and . , : / + - * =");
   }
   return variables;
 }

@@ -429,4 +429,20 @@ TEST_P(ReasonOfTheEnd, TravelsToTheFluid) {
   }
 }
 
+// LIGGGHTS' own warnings are not left in its log, and come with the line that they are of.
+TEST_P(ReasonOfTheEnd, AndWarningsReachTheTerminal) {
+  test::SettlingDisc scene;
+  scene.set_script(test::replaced(scene.script(), "fix              fluid",
+                                  "thermo_modify norm no\nthermo_style one\nfix fluid"));
+  const test::JobResult job = scene.run("", 2, 60.0, GetParam());
+  expect_end(job, 0, {});
+  const std::string said =
+      "liggghts | warning | New thermo_style command, previous thermo_modify settings will be lost "
+      "(at the line: thermo_style one)";
+  const std::size_t at = job.output.find(said);
+  ASSERT_NE(at, std::string::npos) << job.output;
+  EXPECT_EQ(job.output.find(said, at + 1), std::string::npos) << "once:\n" << job.output;
+  EXPECT_NE(test::read_file(scene.folder() + "/log.liggghts").find(said), std::string::npos);
+}
+
 }  // namespace
