@@ -6,7 +6,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <exception>
 #include <memory>
+#include <optional>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/hello.h"
@@ -159,12 +161,25 @@ std::string trace_of(const std::string& file, const Decomposition& ranks) {
   return ranks.rank() == 0 ? file : fmt::format("{}.{}", file, ranks.rank());
 }
 
+/// How long a solid program may take to start [s]; negative: as the protocol has it.
+double connect_timeout(const std::optional<Scene>& scene) {
+  return scene && scene->coupling ? scene->coupling->connect_timeout : -1.0;
+}
+
 /// @param channel  set as soon as there is a partner, so that an error can be told to it
 void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol::World& world) {
-  world = protocol::connect(protocol::Role::Fluid);
+  std::exception_ptr mistake;  // in the scene: said when there is a partner who can hear it
+  std::optional<Scene> read;
+  try {
+    read = read_scene(o.scene);
+  } catch (...) {
+    mistake = std::current_exception();
+  }
+  world = protocol::connect(protocol::Role::Fluid, connect_timeout(read));
   if (world.coupled()) channel = protocol::make_mpi_channel(world, protocol::Role::Fluid);
   if (o.threads == 0) check_environment();
-  const Scene scene = read_scene(o.scene);
+  if (mistake) std::rethrow_exception(mistake);
+  const Scene& scene = *read;
   protocol::limit_waits(scene.coupling
                             ? scene.coupling->timeout
                             : protocol::seconds_from_environment("BPLBM_TIMEOUT", kAloneSeconds));

@@ -20,7 +20,7 @@ class CsvWriter {
   /// @param keep_until  a run that goes on keeps the lines before this time
   CsvWriter(const std::string& path, const std::string& columns, double keep_until = 0.0);
   void row(std::initializer_list<double> values);
-  /// @throws ProtocolError  what was written is lost: the disk is full, or somebody has deleted the
+  /// @throws ProgramError  what was written is lost: the disk is full, or somebody has deleted the
   /// file meanwhile, which the system would go on writing without a word
   void flush();
 

@@ -101,6 +101,8 @@ constexpr Meaning kMeanings[] = {
      "serial-explicit, or parallel-explicit: both programs at once, loads one interval old."},
     {"coupling.timeout",
      "Longest wait of either program for the other, and of a rank for another of its program."},
+    {"coupling.connect_timeout",
+     "How long the solid's program may take to start, e.g. to import what it needs."},
     {"run.end_time", "Time at which the run ends."},
     {"run.steady_below",
      "A fluid alone ends where its velocity changes by less than this a turnover; 0: never."},

@@ -156,6 +156,7 @@ CouplingScene read_coupling(TableReader t) {
   c.lubrication_range = t.number_or("lubrication_range", 0.0, {0.0, 10.0}, "cells");
   c.overlapped = t.choice_or("schedule", "serial", {"serial", "overlapped"}) == "overlapped";
   c.timeout = t.number_or("timeout", c.timeout, Bounds::positive(), "s");
+  c.connect_timeout = t.number_or("connect_timeout", c.connect_timeout, Bounds::positive(), "s");
   t.finish();
   return c;
 }

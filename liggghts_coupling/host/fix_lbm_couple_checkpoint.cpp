@@ -71,7 +71,7 @@ void FixLbmCouple::keep_last_state(const std::exception& error) {
   protocol::SolidParts fault = parts_->beside("fault");
   try {
     write_part(fault);
-  } catch (const protocol::ProtocolError& second) {  // the first is what must be heard
+  } catch (const protocol::ProgramError& second) {  // the first is what must be heard
     fmt::print(stderr, "liggghts | its last state is not kept: {}\n", second.what());
   }
 }

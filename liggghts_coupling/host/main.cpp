@@ -80,7 +80,7 @@ void check_script(const Arguments& arguments) {
   const std::string script = option(arguments, "-in", "-i");
   const std::string problem = script.empty() ? "" : protocol::why_unreadable(script);
   if (problem.empty()) return;
-  throw protocol::ProtocolError(
+  throw protocol::ProgramError(
       fmt::format("{}: {}; give -in SCRIPT, or start in a folder with in.liggghts", script,
                   problem),
       protocol::kBadInput);

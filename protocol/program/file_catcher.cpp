@@ -2,7 +2,6 @@
 #include "protocol/program/file_catcher.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,19 +12,19 @@
 #include <filesystem>
 
 #include "protocol/wire/errors.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 
 FileCatcher::FileCatcher(const std::string& ending)
-    : path_(fmt::format("{}/bplbm-{}{}", std::filesystem::temp_directory_path().string(), getpid(),
-                        ending)) {
+    : path_(format("{}/bplbm-{}{}", std::filesystem::temp_directory_path().string(), getpid(),
+                   ending)) {
   unlink(path_.c_str());  // of a program of that number that was killed
   // Opened without waiting for a writer, and before there is one, so that nobody ever waits.
   if (mkfifo(path_.c_str(), 0600) != 0 ||
       (pipe_ = open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) < 0)
-    throw ProtocolError(
-        fmt::format("{} cannot be made: {}; set TMPDIR to a folder that is writable", path_,
-                    std::strerror(errno)));
+    throw ProgramError(format("{} cannot be made: {}; set TMPDIR to a folder that is writable",
+                              path_, std::strerror(errno)));
   reader_ = std::thread([this] { read_until_done(); });
 }
 

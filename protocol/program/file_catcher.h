@@ -14,7 +14,7 @@ namespace protocol {
 class FileCatcher {
  public:
   /// Makes a pipe with a name in the system's temporary folder. @param ending  of its name
-  /// @throws ProtocolError  the folder is not writable
+  /// @throws ProgramError  the folder is not writable
   explicit FileCatcher(const std::string& ending = {});
   ~FileCatcher();
   FileCatcher(const FileCatcher&) = delete;

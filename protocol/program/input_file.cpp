@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/program/input_file.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+
+#include "protocol/wire/text.h"
 
 namespace protocol {
 
@@ -23,8 +24,8 @@ std::string why_unreadable(const std::string& path, std::uintmax_t most) {
   const std::uintmax_t size = fs::file_size(path, error);
   if (error) return error.message();
   if (size <= most) return {};
-  return fmt::format("holds {:.3g} MB, more than the {:.3g} MB that such a file may have",
-                     1e-6 * static_cast<double>(size), 1e-6 * static_cast<double>(most));
+  return format("holds {:.3g} MB, more than the {:.3g} MB that such a file may have",
+                1e-6 * static_cast<double>(size), 1e-6 * static_cast<double>(most));
 }
 
 }  // namespace protocol

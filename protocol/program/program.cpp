@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/program/program.h"
 
-#include <fmt/format.h>
 #include <mpi.h>
 #include <unistd.h>
 
@@ -16,6 +15,7 @@
 
 #include "protocol/program/watch.h"
 #include "protocol/wire/numbers.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 
@@ -62,17 +62,17 @@ void note_answer() {
 
 void throw_if_signalled() {
   if (!caught || seconds_since_life() < grace()) return;
-  throw ProtocolError(
-      fmt::format("ended by signal {}: the partner or mpirun died, or somebody stopped the job",
-                  static_cast<int>(caught)));
+  throw ProgramError(
+      format("ended by signal {}: the partner or mpirun died, or somebody stopped the job",
+             static_cast<int>(caught)));
 }
 
 int exit_code_of(const std::exception& error) {
-  const auto* known = dynamic_cast<const ProtocolError*>(&error);
+  const auto* known = dynamic_cast<const ProgramError*>(&error);
   return known ? known->exit_code() : kFault;
 }
 
-int leave_after(const std::exception& error, const std::string& program, Channel* channel) {
+Parting part_after(const std::exception& error, const std::string& program, Channel* channel) {
   const int code = exit_code_of(error);
   const auto* from_peer = dynamic_cast<const PeerFault*>(&error);
   const bool in_order = dynamic_cast<const Refusal*>(&error) != nullptr ||
@@ -80,14 +80,14 @@ int leave_after(const std::exception& error, const std::string& program, Channel
   if (!channel || channel->local_rank() == 0) {
     std::fflush(stdout);
     if (from_peer)
-      fmt::print(stderr, "{} | error | the {} program stopped: {}\n", program,
-                 channel ? channel->remote_name() : "other", error.what());
+      print(stderr, "{} | error | the {} program stopped: {}\n", program,
+            channel ? channel->remote_name() : "other", error.what());
     else
-      fmt::print(stderr, "{} | error | {}\n", program, error.what());
+      print(stderr, "{} | error | {}\n", program, error.what());
     std::fflush(stderr);
   }
-  if (in_order) return code;
-  if (caught) abort_job(code);  // mpirun is ending the job: nobody is left to talk to
+  // after a signal mpirun is ending the job: nobody is left to talk to
+  if (in_order || caught) return {code, in_order};
   if (channel && from_peer) {
     channel->say_farewell();
     // the partner ends the job with its own exit code; be patient with it for a moment
@@ -96,7 +96,13 @@ int leave_after(const std::exception& error, const std::string& program, Channel
     channel->raise({code, error.what()});
     channel->await_farewell(kFarewellSeconds);
   }
-  abort_job(code);
+  return {code, false};
+}
+
+int leave_after(const std::exception& error, const std::string& program, Channel* channel) {
+  const Parting parting = part_after(error, program, channel);
+  if (!parting.in_order) abort_job(parting.exit_code);
+  return parting.exit_code;
 }
 
 namespace {
@@ -115,7 +121,7 @@ class End {
     std::vector<LifeSign> before = signs_of(partner);
     if (before.empty()) return;  // there is no watch
     if (!ending.missing.empty())
-      say(stdout, "end", fmt::format("waits for the farewell of {}", list_of(ending.missing)));
+      say(stdout, "end", format("waits for the farewell of {}", list_of(ending.missing)));
     while (!ending.missing.empty()) {
       std::erase_if(ending.missing, [&](int r) { return before.at(r).life == Life::Absent; });
       if (ending.missing.empty()) return;  // not ours to ask: it may wait in MPI's own end
@@ -125,8 +131,8 @@ class End {
       if (!lost.empty()) {
         const std::string silent = silent_ranks();
         give_up(!silent.empty() ? silent
-                                : fmt::format("{} did not end within {:.3g} s, and did nothing",
-                                              list_of(lost), limit()));
+                                : format("{} did not end within {:.3g} s, and did nothing",
+                                         list_of(lost), limit()));
       }
       before = now;
     }
@@ -162,7 +168,7 @@ class End {
     if (signals != signals_before_) abort_job(exit_code_ ? exit_code_ : kFault);
     if (!ending.fault) return ending;
     say(stderr, "error",
-        fmt::format("the {} program stopped: {}", channel_.remote_name(), ending.fault->reason));
+        format("the {} program stopped: {}", channel_.remote_name(), ending.fault->reason));
     channel_.await_farewell(kFarewellSeconds);  // the partner ends the job
     abort_job(exit_code_ ? exit_code_ : ending.fault->exit_code);
   }
@@ -178,13 +184,13 @@ class End {
   void say(std::FILE* file, const char* part, const std::string& text) const {
     if (file == stdout && channel_.local_rank() != 0) return;
     std::fflush(stdout);
-    fmt::print(file, "{} | {} | {}\n", program_, part, text);
+    print(file, "{} | {} | {}\n", program_, part, text);
     std::fflush(file);
   }
 
   std::string list_of(const std::vector<int>& ranks) const {
-    return fmt::format("{} rank{} {}", channel_.remote_name(), ranks.size() > 1 ? "s" : "",
-                       fmt::join(ranks, ", "));
+    return format("{} rank{} {}", channel_.remote_name(), ranks.size() > 1 ? "s" : "",
+                  join(ranks, ", "));
   }
 
   int& exit_code_;
@@ -217,7 +223,7 @@ int finish(int exit_code, const std::string& program, std::unique_ptr<Channel>& 
 
 Deadline::Deadline(const std::exception& error, const std::string& program, unsigned seconds) {
   code_at_deadline = exit_code_of(error);
-  text_at_deadline = fmt::format("{} | error | {}\n", program, error.what());
+  text_at_deadline = format("{} | error | {}\n", program, error.what());
   std::signal(SIGALRM, [](int) {
     [[maybe_unused]] const auto written =
         write(STDERR_FILENO, text_at_deadline.data(), text_at_deadline.size());

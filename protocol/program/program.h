@@ -13,13 +13,22 @@
 
 namespace protocol {
 
-/// Exit code that an exception stands for: that of a ProtocolError, else kFault.
+/// Exit code that an exception stands for: that of a ProgramError, else kFault.
 int exit_code_of(const std::exception& error);
 
-/// Ends a failing program: prints `<program> | error | <text>`; unless the partner already knows
-/// (PeerFault), tells it and waits until it has cleaned up; then ends the whole MPI job.
-/// Refusal and PeerLeft return the exit code instead: both programs then leave in good order.
+/// What a failing program leaves behind.
+struct Parting {
+  int exit_code = kFault;
+  bool in_order = false;  ///< as after Refusal and PeerLeft: both programs go on to `finish`
+};
+
+/// Prints `<program> | error | <text>`; unless the partner already knows (PeerFault) or both leave
+/// in good order, tells it and waits until it has cleaned up.
 /// @param channel  null before there is a partner
+Parting part_after(const std::exception& error, const std::string& program, Channel* channel);
+
+/// Ends a failing program: `part_after`, then the end of the whole MPI job; in good order it
+/// returns the exit code instead.
 int leave_after(const std::exception& error, const std::string& program, Channel* channel);
 
 /// The end of every program of a job, in place of MPI_Finalize: waits for the ranks of its own
@@ -49,7 +58,7 @@ void catch_signals();
 bool signalled();
 /// The partner has answered: it lives, and the run goes on until that interval.
 void note_answer();
-/// @throws ProtocolError  where a signal and the partner's last answer came longer ago than a grace
+/// @throws ProgramError  where a signal and the partner's last answer came longer ago than a grace
 /// of 0.6 s (BPLBM_GRACE), in which a living partner would have answered
 void throw_if_signalled();
 

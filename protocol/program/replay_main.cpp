@@ -77,13 +77,13 @@ TraceComparison play_fluid(Channel& channel, const Trace& trace, const Options& 
       const auto found =
           std::find_if(r.loads.begin(), r.loads.end(), [&](const Load& l) { return l.id == s.id; });
       if (found == r.loads.end())
-        throw ProtocolError(fmt::format(
-            "the recording holds no load for particle {} at interval {}", s.id, r.head.interval));
+        throw ProgramError(fmt::format("the recording holds no load for particle {} at interval {}",
+                                       s.id, r.head.interval));
       loads.push_back(*found);
     }
     session.answer(loads, r.load_flags);
   }
-  throw ProtocolError("the recording ends here, but the solid goes on");
+  throw ProgramError("the recording ends here, but the solid goes on");
 }
 
 int run(const Options& options, std::unique_ptr<Channel>& channel, World& world) {
@@ -91,7 +91,7 @@ int run(const Options& options, std::unique_ptr<Channel>& channel, World& world)
   world = connect(role);
   limit_waits(options.timeout);
   if (!world.coupled())
-    throw ProtocolError(
+    throw ProgramError(
         fmt::format("no partner to replay to; start: mpirun -np 1 {}",
                     role == Role::Solid ? "lbm scene.toml : -np 1 replay --as solid trace.h5"
                                         : "replay --as fluid trace.h5 : -np 1 liggghts -in FILE"),
@@ -100,7 +100,7 @@ int run(const Options& options, std::unique_ptr<Channel>& channel, World& world)
   int ranks = 0;
   MPI_Comm_size(world.local, &ranks);
   if (role == Role::Fluid && ranks > 1)
-    throw ProtocolError("start 'replay --as fluid' with one rank", kBadInput);
+    throw ProgramError("start 'replay --as fluid' with one rank", kBadInput);
   const Trace trace(options.path);
   const auto result = role == Role::Solid ? play_solid(*channel, trace, options)
                                           : play_fluid(*channel, trace, options);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/program/solid_parts.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <fstream>
 #include <set>
 
 #include "protocol/wire/errors.h"
 #include "protocol/wire/numbers.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 
@@ -37,7 +36,7 @@ SolidParts SolidParts::beside(const std::string& name) const {
 }
 
 std::string SolidParts::name(std::int64_t interval) const {
-  return fmt::format("{}.{}.solid", prefix_, interval);
+  return format("{}.{}.solid", prefix_, interval);
 }
 
 void SolidParts::keep(std::int64_t interval, std::span<const std::byte> content) {
@@ -49,7 +48,7 @@ void SolidParts::keep(std::int64_t interval, std::span<const std::byte> content)
   if (out) fs::rename(part, whole, error);
   if (!out || error) {
     fs::remove(part, error);
-    throw ProtocolError("the checkpoint " + whole + " cannot be written; is the disk full?");
+    throw ProgramError("the checkpoint " + whole + " cannot be written; is the disk full?");
   }
   remove_others(interval);
 }

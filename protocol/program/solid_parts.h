@@ -25,7 +25,7 @@ class SolidParts {
   /// Writes the part of an interval. It and the two before stay: until the fluid has written its
   /// own, the last whole pair is the one before, and the one before that stands behind it. Older
   /// ones are removed, and those of later intervals, from which no run will go on.
-  /// @throws ProtocolError  cannot be written; those before stay
+  /// @throws ProgramError  cannot be written; those before stay
   void keep(std::int64_t interval, std::span<const std::byte> content);
 
  private:

@@ -2,7 +2,6 @@
 #include "protocol/program/watch.h"
 
 #include <errno.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
@@ -20,6 +19,8 @@
 #include <limits>
 #include <thread>
 #include <utility>
+
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -63,7 +64,7 @@ std::size_t job_key() {
 socklen_t address_of(int rank, sockaddr_un& address) {
   address = {};
   address.sun_family = AF_UNIX;
-  const std::string name = fmt::format("bplbm.{:x}.{}", job->key, rank);
+  const std::string name = format("bplbm.{:x}.{}", job->key, rank);
   std::copy(name.begin(), name.end(), address.sun_path + 1);
   return static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
 }
@@ -151,9 +152,9 @@ std::string names(const std::vector<std::size_t>& ranks) {
     for (const std::size_t r : ranks)
       if (job->members[r].role == role) own.push_back(job->members[r].rank);
     if (own.empty()) continue;
-    text += fmt::format("{}{} rank{} {}", text.empty() ? "" : " and ",
-                        role == Role::Fluid ? "fluid" : "solid", own.size() > 1 ? "s" : "",
-                        fmt::join(own, ", "));
+    text +=
+        format("{}{} rank{} {}", text.empty() ? "" : " and ",
+               role == Role::Fluid ? "fluid" : "solid", own.size() > 1 ? "s" : "", join(own, ", "));
   }
   return text;
 }
@@ -248,9 +249,9 @@ class Lookout {
       }
     const Member& me = job->members[job->me];
     const std::string text =
-        fmt::format("{} | error | {} ({} rank {} has waited for {:.3g} s in {})\n",
-                    program_invocation_short_name, who, me.role == Role::Fluid ? "fluid" : "solid",
-                    me.rank, seconds(Clock::now() - began_), call);
+        format("{} | error | {} ({} rank {} has waited for {:.3g} s in {})\n",
+               program_invocation_short_name, who, me.role == Role::Fluid ? "fluid" : "solid",
+               me.rank, seconds(Clock::now() - began_), call);
     if (ftrylockfile(stdout) == 0) {
       std::fflush(stdout);
       funlockfile(stdout);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/transport/memory_channel.h"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -10,11 +8,13 @@
 #include <optional>
 #include <utility>
 
+#include "protocol/wire/text.h"
+
 namespace protocol {
 
 std::string timeout_text(const Channel& channel, int remote, const Wait& wait) {
-  return fmt::format("no answer from {} rank {} for {:.3g} s while waiting for {}",
-                     channel.remote_name(), remote, wait.seconds, wait.what);
+  return format("no answer from {} rank {} for {:.3g} s while waiting for {}",
+                channel.remote_name(), remote, wait.seconds, wait.what);
 }
 
 namespace {
@@ -56,7 +56,7 @@ class MemoryChannel final : public Channel {
         [&] { return mine().fault.has_value() || !queue.empty() || mine().left[remote]; });
     throw_fault();
     if (came && queue.empty())
-      throw PeerLeft(fmt::format("{} rank {} left without {}", remote_name(), remote, wait.what));
+      throw PeerLeft(format("{} rank {} left without {}", remote_name(), remote, wait.what));
     if (!came) throw Timeout(timeout_text(*this, remote, wait));
     Bytes frame = std::move(queue.front());
     queue.pop_front();

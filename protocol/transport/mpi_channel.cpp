@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/transport/mpi_channel.h"
 
-#include <fmt/format.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 #include "protocol/wire/numbers.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -21,6 +21,7 @@ constexpr int kFrameTag = 7001;
 constexpr int kUrgentTag = 7002;
 constexpr int kRoleTag = 7003;
 constexpr int kLeaderTag = 7004;
+constexpr int kPatienceTag = 7005;
 constexpr auto kOnItsWay = std::chrono::seconds(1);
 
 using Clock = std::chrono::steady_clock;
@@ -117,7 +118,7 @@ class MpiChannel final : public Channel {
   static int length(const Bytes& frame) {
     if (frame.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
       throw ProtocolError(
-          fmt::format("a message of {} bytes exceeds MPI's 2 GiB: use more ranks", frame.size()));
+          format("a message of {} bytes exceeds MPI's 2 GiB: use more ranks", frame.size()));
     return static_cast<int>(frame.size());
   }
 
@@ -130,7 +131,7 @@ class MpiChannel final : public Channel {
     return frame;
   }
 
-  /// @throws PeerFault, or ProtocolError where a signal has come
+  /// @throws PeerFault, or ProgramError where a signal has come
   void throw_if_stopped() {
     throw_if_signalled();
     if (const Fault* fault = hear_urgent()) throw PeerFault(*fault);
@@ -155,12 +156,12 @@ class MpiChannel final : public Channel {
   /// After its farewell a rank sends nothing more; what it sent before may still be on its way.
   void throw_if_left(int remote, const Wait& wait) const {
     if (left_[remote] && Clock::now() - *left_[remote] > kOnItsWay)
-      throw PeerLeft(fmt::format("{} rank {} left without {}", remote_name(), remote, wait.what));
+      throw PeerLeft(format("{} rank {} left without {}", remote_name(), remote, wait.what));
   }
 
   [[noreturn]] void give_up(int remote, const Wait& wait) const {
     const std::string silent = silent_ranks(), text = timeout_text(*this, remote, wait);
-    throw Timeout(silent.empty() ? text : fmt::format("{} ({})", silent, text));
+    throw Timeout(silent.empty() ? text : format("{} ({})", silent, text));
   }
 
   /// The frames stay alive with the channel: the program is about to end, nobody waits for them.
@@ -184,16 +185,57 @@ class MpiChannel final : public Channel {
   std::vector<bool> failed_;                            ///< [remote] whether a fault of it came
 };
 
-double patience(double seconds) {
-  if (seconds >= 0.0) return seconds;
-  return seconds_from_environment("BPLBM_CONNECT_TIMEOUT", 5.0);
+constexpr const char* kEnvironment = "BPLBM_CONNECT_TIMEOUT";
+constexpr double kFluidPatience = 30.0, kSolidPatience = 60.0;
+double told_patience = 0.0;  // outlives the sends
+
+/// A fluid says beside its role how long its scene wants the others to be waited for [s]. Who does
+/// not know the message leaves it where it is.
+void tell_patience(int ranks, double seconds) {
+  told_patience = seconds;
+  for (int r = 0; r < ranks; ++r) {
+    MPI_Request request;
+    MPI_Isend(&told_patience, 1, MPI_DOUBLE, r, kPatienceTag, MPI_COMM_WORLD, &request);
+    MPI_Request_free(&request);
+  }
+}
+
+/// @return the longest that a fluid has told since, or `seconds`
+double hear_patience(double seconds) {
+  for (;;) {
+    MPI_Status status;
+    int here = 0;
+    MPI_Iprobe(MPI_ANY_SOURCE, kPatienceTag, MPI_COMM_WORLD, &here, &status);
+    if (!here) return seconds;
+    double heard = 0.0;
+    MPI_Recv(&heard, 1, MPI_DOUBLE, status.MPI_SOURCE, kPatienceTag, MPI_COMM_WORLD,
+             MPI_STATUS_IGNORE);
+    seconds = std::max(seconds, heard);
+  }
+}
+
+[[noreturn]] void name_silent(std::vector<MPI_Request>& receives, double seconds) {
+  std::vector<std::size_t> silent;
+  for (std::size_t r = 0; r < receives.size(); ++r) {
+    int done = 0;
+    MPI_Request_get_status(receives[r], &done, MPI_STATUS_IGNORE);
+    if (!done) silent.push_back(r);
+  }
+  throw Timeout(
+      format("rank(s) {} of this MPI job did not say within {:.3g} s that they are 'lbm' or an "
+             "engine of it; the system's stock liggghts cannot couple: give the absolute path of "
+             "build/release/bin/liggghts. An engine that needs longer to start is waited for with "
+             "coupling.connect_timeout = SECONDS in the scene, or {} in the environment",
+             join(silent, " "), seconds, kEnvironment));
 }
 
 /// Everybody tells everybody its role, without collectives.
 std::vector<std::uint32_t> exchange_roles(Role role, double seconds) {
+  constexpr double turn = 0.1;
   int me = 0, size = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &me);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
+  if (role == Role::Fluid) tell_patience(size, seconds);
   const std::uint32_t mine = static_cast<std::uint32_t>(role);
   std::vector<std::uint32_t> roles(size, 0);
   std::vector<MPI_Request> receives(size), sends(size);
@@ -201,24 +243,17 @@ std::vector<std::uint32_t> exchange_roles(Role role, double seconds) {
     MPI_Irecv(&roles[r], 1, MPI_UINT32_T, r, kRoleTag, MPI_COMM_WORLD, &receives[r]);
     MPI_Isend(&mine, 1, MPI_UINT32_T, r, kRoleTag, MPI_COMM_WORLD, &sends[r]);
   }
-  const bool all = poll(seconds, [&] {
+  const auto all = [&] {
     int received = 0, sent = 0;
     MPI_Testall(size, receives.data(), &received, MPI_STATUSES_IGNORE);
     MPI_Testall(size, sends.data(), &sent, MPI_STATUSES_IGNORE);
     return received && sent;
-  });
-  if (!all) {
-    std::string silent;
-    for (int r = 0; r < size; ++r) {
-      int done = 0;
-      MPI_Request_get_status(receives[r], &done, MPI_STATUS_IGNORE);
-      if (!done) silent += fmt::format(" {}", r);
-    }
-    throw Timeout(
-        fmt::format("rank(s){} of this MPI job did not say within {:.3g} s that they are 'lbm' or "
-                    "our 'liggghts'; the system's stock liggghts cannot couple: give the absolute "
-                    "path of build/release/bin/liggghts",
-                    silent, seconds));
+  };
+  const auto begin = Clock::now();
+  for (double left = seconds; !poll(std::min(left, turn), all);) {
+    seconds = hear_patience(seconds);
+    left = seconds - std::chrono::duration<double>(Clock::now() - begin).count();
+    if (left <= 0.0) name_silent(receives, seconds);
   }
   return roles;
 }
@@ -235,11 +270,13 @@ std::vector<Member> members(const std::vector<std::uint32_t>& roles) {
 }  // namespace
 
 World connect(Role role, double seconds) {
-  const auto roles = exchange_roles(role, patience(seconds));
+  if (seconds < 0.0) seconds = role == Role::Fluid ? kFluidPatience : kSolidPatience;
+  seconds = seconds_from_environment(kEnvironment, seconds);
+  const auto roles = exchange_roles(role, seconds);
   int me = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &me);
   start_watch(members(roles), me);
-  limit_waits(patience(seconds), Scope::Job);
+  limit_waits(seconds, Scope::Job);
   World world;
   MPI_Comm everybody;  // from here on all ranks are known to follow: collectives are safe
   MPI_Comm_dup(MPI_COMM_WORLD, &everybody);

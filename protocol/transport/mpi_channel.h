@@ -20,8 +20,10 @@ struct World {
 /// Finds out which ranks of MPI_COMM_WORLD are fluid and which solid, in any order and number, and
 /// builds the communicators. Uses only polled point-to-point messages until everybody has answered,
 /// so that a program that does not know this protocol cannot hang it.
-/// @param seconds  patience; negative: BPLBM_CONNECT_TIMEOUT or 5 s
-/// @throws Timeout naming the ranks that did not answer
+/// @param seconds  how long the others may take to start; negative: 30 s for a fluid, 60 s for a
+///                 solid. BPLBM_CONNECT_TIMEOUT in the environment counts instead. A solid waits as
+///                 long as the fluid does that it hears of
+/// @throws Timeout naming the ranks that did not answer, and the cure
 World connect(Role role, double seconds = -1.0);
 
 /// Frees the communicators, where the process goes on to another connection. A program that ends

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/transport/trace.h"
 
-#include <fmt/format.h>
-
 #include <stdexcept>
+
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -33,7 +33,7 @@ TraceWriter::~TraceWriter() {
   try {
     flush();
   } catch (const std::exception& e) {
-    fmt::print(stderr, "trace: the last rows are lost: {}\n", e.what());
+    print(stderr, "trace: the last rows are lost: {}\n", e.what());
   }
 }
 
@@ -94,8 +94,8 @@ Trace::Trace(const std::string& path) {
     throw std::runtime_error(path + " is an HDF5 file but no trace of this program");
   }
   if (version != kTraceVersion)
-    throw std::runtime_error(fmt::format("{} has trace version {}, this program reads {}", path,
-                                         version, kTraceVersion));
+    throw std::runtime_error(
+        format("{} has trace version {}, this program reads {}", path, version, kTraceVersion));
   recorder_ = hdf5::text_attribute(file, "recorder");
   local_rank_ = static_cast<int>(hdf5::integer_attribute(file, "local_rank"));
   remote_size_ = static_cast<int>(hdf5::integer_attribute(file, "remote_size"));
@@ -217,9 +217,9 @@ class ReplayChannel final : public Channel {
     const FrameRow& row = next(sent_[remote], remote, wait);
     if (row.kind == Kind::Hello || frame == trace_->frame(row)) return;  // hellos hold versions
     throw ProtocolError(
-        fmt::format("interval {}: the {} message sent to {} differs from the "
-                    "recorded one; `trace diff` names the first difference",
-                    row.interval, name(kind_of(frame)), remote_name()));
+        format("interval {}: the {} message sent to {} differs from the "
+               "recorded one; `trace diff` names the first difference",
+               row.interval, name(kind_of(frame)), remote_name()));
   }
   Bytes receive(int remote, const Wait& wait) override {
     const Bytes frame = trace_->frame(next(received_[remote], remote, wait));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/transport/trace_compare.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <stdexcept>
 #include <unordered_map>
+
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -74,7 +74,7 @@ std::vector<IntervalRecord> timeline(const Trace& trace) {
     for (const State& s : record.states) {
       const auto shape = shapes.find(s.id);
       if (shape == shapes.end())
-        throw std::runtime_error(fmt::format("the trace never tells the shape of {}", s.id));
+        throw std::runtime_error(format("the trace never tells the shape of {}", s.id));
       record.shapes.push_back(shape->second);
     }
     result.push_back(std::move(record));
@@ -157,7 +157,7 @@ void TraceComparison::vectors(std::int64_t interval, std::int64_t id, int field,
     double way = a[k] - b[k];
     if (field == 0 && scale_.period[k] > 0.0) way = std::remainder(way, scale_.period[k]);
     if (way == 0.0) continue;
-    if (!first_) first_ = {interval, id, fmt::format("{}[{}]", kFields[field], k), a[k], b[k]};
+    if (!first_) first_ = {interval, id, format("{}[{}]", kFields[field], k), a[k], b[k]};
     const double relative = std::abs(way) / std::max(scales[field], 1e-300);
     largest_[field] = std::isfinite(relative) ? std::max(largest_[field], relative) : kInfinity;
   }
@@ -200,12 +200,12 @@ void TraceComparison::loads(std::int64_t interval, std::span<const Load> a,
 std::string TraceComparison::text() const {
   if (!first_) return "identical, bit for bit";
   const std::string first =
-      fmt::format("first difference at interval {}, particle {}, {}: {:.17g} against {:.17g}; ",
-                  first_->interval, first_->id, first_->field, first_->a, first_->b);
-  if (!scale_.physical) return first + fmt::format("largest relative difference {:.3g}", largest());
+      format("first difference at interval {}, particle {}, {}: {:.17g} against {:.17g}; ",
+             first_->interval, first_->id, first_->field, first_->a, first_->b);
+  if (!scale_.physical) return first + format("largest relative difference {:.3g}", largest());
   const auto& [x, v, omega, force, torque] = largest_;
   return first +
-         fmt::format(
+         format(
              "largest differences: {:.3g} radii in place, {:.3g} of the fastest in "
              "velocity ({:.3g} in angular velocity), {:.3g} weights in force ({:.3g} in torque)",
              x, v, omega, force, torque);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/wire/agreement.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -47,8 +47,8 @@ class Comparison {
 
  private:
   template <class... Args>
-  void add(fmt::format_string<Args...> format, Args&&... args) {
-    found_.push_back(fmt::format(format, std::forward<Args>(args)...));
+  void add(Pattern<sizeof...(Args)> pattern, const Args&... args) {
+    found_.push_back(format(pattern, args...));
   }
 
   void roles() {
@@ -61,7 +61,7 @@ class Comparison {
       add("checkpoints: the fluid's scene wants them (run.checkpoint_every), '{}' cannot write any",
           s_.program);
     if ((f_.features & ~s_.features & ~kCheckpoints) != 0)
-      add("protocol features: fluid {:#x}, solid {:#x}", f_.features, s_.features);
+      add("protocol features: fluid 0x{:x}, solid 0x{:x}", f_.features, s_.features);
   }
 
   void geometry() {

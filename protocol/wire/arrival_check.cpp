@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/wire/arrival_check.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 
 #include "protocol/wire/errors.h"
 #include "protocol/wire/overlap.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -20,12 +19,12 @@ constexpr double kSlack = 1e-6;     // of ranges and masses
 constexpr double kGrowth = 0.1;     // of a radius between two exchanges
 
 template <class... Args>
-[[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) {
-  throw BadMessage(fmt::format(format, std::forward<Args>(args)...), kBadInput);
+[[noreturn]] void refuse(Pattern<sizeof...(Args)> pattern, const Args&... args) {
+  throw BadMessage(format(pattern, args...), kBadInput);
 }
 
 std::string text(const Vec3& v) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", v[0], v[1], v[2]);
+  return format("({:.6g}, {:.6g}, {:.6g})", v[0], v[1], v[2]);
 }
 
 double norm(const Vec3& v) {
@@ -34,8 +33,8 @@ double norm(const Vec3& v) {
 
 void expect_finite(std::int64_t id, const Vec3& value, const char* what, std::int64_t interval) {
   if (std::isfinite(value[0]) && std::isfinite(value[1]) && std::isfinite(value[2])) return;
-  throw BadMessage(fmt::format("particle {}: {} is ({}, {}, {}) at interval {}: not finite", id,
-                               what, value[0], value[1], value[2], interval),
+  throw BadMessage(format("particle {}: {} is ({}, {}, {}) at interval {}: not finite", id, what,
+                          value[0], value[1], value[2], interval),
                    kNumerics);
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/wire/codec.h"
 
-#include <fmt/format.h>
-
 #include <cstring>
 #include <limits>
 
 #include "protocol/wire/errors.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -79,7 +78,7 @@ class Reader {
   Reader(const Bytes& frame, Kind expected) : bytes_(frame) {
     const Kind kind = kind_of(frame);
     if (kind != expected)
-      throw BadMessage(fmt::format("expected a {} message, got {}", name(expected), name(kind)));
+      throw BadMessage(format("expected a {} message, got {}", name(expected), name(kind)));
   }
 
   Reader& operator>>(bool& value) {  // a byte other than 0 and 1 is no bool
@@ -128,8 +127,8 @@ class Reader {
 
   void expect_end() const {
     if (at_ != bytes_.size())
-      throw BadMessage(fmt::format("{} bytes left over in a {} message", bytes_.size() - at_,
-                                   name(kind_of(bytes_))));
+      throw BadMessage(
+          format("{} bytes left over in a {} message", bytes_.size() - at_, name(kind_of(bytes_))));
   }
 
  private:
@@ -137,13 +136,13 @@ class Reader {
     std::uint64_t n = 0;
     *this >> n;
     if (n > (bytes_.size() - at_) / item_size)
-      throw BadMessage(fmt::format("a {} message promises {} items, more than it holds",
-                                   name(kind_of(bytes_)), n));
+      throw BadMessage(
+          format("a {} message promises {} items, more than it holds", name(kind_of(bytes_)), n));
     return n;
   }
   void copy(void* out, std::size_t size) {
     if (size > bytes_.size() - at_)
-      throw BadMessage(fmt::format("a {} message ends too early", name(kind_of(bytes_))));
+      throw BadMessage(format("a {} message ends too early", name(kind_of(bytes_))));
     if (size) std::memcpy(out, bytes_.data() + at_, size);
     at_ += size;
   }
@@ -225,16 +224,16 @@ const char* name(Kind kind) {
 Kind kind_of(const Bytes& frame) {
   FrameHead head;
   if (frame.size() < sizeof head)
-    throw BadMessage(fmt::format("a frame of {} bytes is too short", frame.size()));
+    throw BadMessage(format("a frame of {} bytes is too short", frame.size()));
   std::memcpy(&head, frame.data(), sizeof head);
   if (head.magic == kMagicSwapped)
     throw BadMessage("the partner runs on a machine of the other byte order: not supported");
   if (head.magic != kMagic) throw BadMessage("the partner does not speak the BPLBM protocol");
   if (head.kind < Kind::Hello || head.kind > Kind::Farewell)
-    throw BadMessage(fmt::format("unknown kind of message {}", static_cast<unsigned>(head.kind)));
+    throw BadMessage(format("unknown kind of message {}", static_cast<unsigned>(head.kind)));
   if (head.payload != frame.size() - sizeof head)
-    throw BadMessage(fmt::format("a {} message promises {} bytes and has {}", name(head.kind),
-                                 head.payload, frame.size() - sizeof head));
+    throw BadMessage(format("a {} message promises {} bytes and has {}", name(head.kind),
+                            head.payload, frame.size() - sizeof head));
   return head.kind;
 }
 
@@ -265,9 +264,9 @@ Hello decode(const Bytes& frame) {
   std::uint32_t version = 0;  // another version may have other fields: look before reading them
   Reader(frame, Kind::Hello) >> version;
   if (version != kProtocolVersion)
-    throw BadMessage(fmt::format("protocol version: partner speaks {}, this program {}; rebuild "
-                                 "both programs from the same release",
-                                 version, kProtocolVersion),
+    throw BadMessage(format("protocol version: partner speaks {}, this program {}; rebuild "
+                            "both programs from the same release",
+                            version, kProtocolVersion),
                      kBadInput);
   return read<Hello>(Kind::Hello, frame);
 }

@@ -13,15 +13,23 @@ namespace protocol {
 /// Exit codes of every program of this project.
 enum ExitCode : int { kOk = 0, kFault = 1, kBadInput = 2, kNumerics = 3, kOutOfTolerance = 4 };
 
-/// Something is wrong with the exchange itself: carries the exit code it leads to.
-class ProtocolError : public std::runtime_error {
+/// What ends a program of a job: carries the exit code that it leads to. Its kinds are mistakes of
+/// a user (a scene, a script, a command line), what the machine refuses (a full disk), a
+/// computation that cannot go on, and errors of the exchange.
+class ProgramError : public std::runtime_error {
  public:
-  explicit ProtocolError(const std::string& what, int exit_code = kFault)
+  explicit ProgramError(const std::string& what, int exit_code = kFault)
       : std::runtime_error(what), exit_code_(exit_code) {}
   int exit_code() const { return exit_code_; }
 
  private:
   int exit_code_;
+};
+
+/// Something is wrong with the exchange itself.
+class ProtocolError : public ProgramError {
+ public:
+  using ProgramError::ProgramError;
 };
 
 /// Nothing came in time. The text names whom was waited for, for what, and for how long.

@@ -27,15 +27,15 @@ std::optional<Number> to_number(std::string_view text) {
 }
 
 /// Seconds that an environment variable gives, or else `fallback`.
-/// @throws ProtocolError  it is set to something else than a number of at least 0
+/// @throws ProgramError  it is set to something else than a number of at least 0
 inline double seconds_from_environment(const char* name, double fallback) {
   const char* set = std::getenv(name);
   if (!set) return fallback;
   const auto seconds = to_number<double>(set);
   if (seconds && *seconds >= 0.0) return *seconds;
-  throw ProtocolError(std::string("the environment variable ") + name + " = '" + set +
-                          "' is no time; give seconds, at least 0, or unset it",
-                      kBadInput);
+  throw ProgramError(std::string("the environment variable ") + name + " = '" + set +
+                         "' is no time; give seconds, at least 0, or unset it",
+                     kBadInput);
 }
 
 }  // namespace protocol

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/wire/overlap.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
+
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -162,7 +162,7 @@ std::optional<Overlap> find_overlap(std::span<const Ball> balls, const Hello& bo
 
 std::string describe(const Overlap& pair) {
   const auto& [a, b, distance] = pair;
-  return fmt::format(
+  return format(
       "particles {} and {} overlap: their centres ({:.6g}, {:.6g}, {:.6g}) and "
       "({:.6g}, {:.6g}, {:.6g}) m are {:.3g} m apart, their radii are {:.6g} and {:.6g} m",
       a.id, b.id, a.x[0], a.x[1], a.x[2], b.x[0], b.x[1], b.x[2], distance, a.radius, b.radius);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/wire/session.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "protocol/wire/agreement.h"
 #include "protocol/wire/numbers.h"
 #include "protocol/wire/routing.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -54,16 +53,16 @@ template <class Record>
 void expect_finite(const Record& record, const Vec3& value, const char* what,
                    std::int64_t interval) {
   if (!finite(value))
-    throw BadMessage(fmt::format("particle {}: {} is ({}, {}, {}) at interval {}: not finite",
-                                 record.id, what, value[0], value[1], value[2], interval),
+    throw BadMessage(format("particle {}: {} is ({}, {}, {}) at interval {}: not finite", record.id,
+                            what, value[0], value[1], value[2], interval),
                      kNumerics);
 }
 
 [[noreturn]] void refuse_astray(const State& s, std::int64_t interval) {
   throw ProtocolError(
-      fmt::format("particle {}: its centre ({:.6g}, {:.6g}, {:.6g}) m lies far outside of the box "
-                  "at interval {}; correct its place, or delete it",
-                  s.id, s.x[0], s.x[1], s.x[2], interval),
+      format("particle {}: its centre ({:.6g}, {:.6g}, {:.6g}) m lies far outside of the box "
+             "at interval {}; correct its place, or delete it",
+             s.id, s.x[0], s.x[1], s.x[2], interval),
       kBadInput);
 }
 
@@ -80,8 +79,8 @@ double timeout_of(const Hello& fluid, double fallback) {
 void expect_interval(const StepHeader& head, std::int64_t expected, const Channel& channel,
                      int rank) {
   if (head.interval != expected)
-    throw BadMessage(fmt::format("{} rank {} sent interval {} where {} was expected",
-                                 channel.remote_name(), rank, head.interval, expected));
+    throw BadMessage(format("{} rank {} sent interval {} where {} was expected",
+                            channel.remote_name(), rank, head.interval, expected));
 }
 
 }  // namespace
@@ -104,8 +103,8 @@ const Hello& FluidSession::agree() {
   for (int r = 0; r < channel_.remote_size(); ++r) {
     const Bytes frame = channel_.receive(r, {timeout_, "its hello (end of its script's set-up)"});
     if (kind_of(frame) == Kind::Goodbye)
-      throw PeerLeft(fmt::format("{} left before the coupling began: {}", channel_.remote_name(),
-                                 decode<Goodbye>(frame).reason));
+      throw PeerLeft(format("{} left before the coupling began: {}", channel_.remote_name(),
+                            decode<Goodbye>(frame).reason));
     const Hello hello = decode<Hello>(frame);
     if (r == 0) partner_ = hello;
   }
@@ -118,7 +117,7 @@ const Arrival& FluidSession::receive() {
   std::vector<StateBatch> batches;
   for (int r = 0; r < channel_.remote_size(); ++r) {
     const Bytes frame =
-        channel_.receive(r, {timeout_, fmt::format("the states of interval {}", next_interval_)});
+        channel_.receive(r, {timeout_, format("the states of interval {}", next_interval_)});
     if (kind_of(frame) == Kind::Goodbye) {
       arrival_ = {{next_interval_, 0.0, kLast}, {}, decode<Goodbye>(frame).reason, {}};
       continue;
@@ -129,8 +128,8 @@ const Arrival& FluidSession::receive() {
   }
   if (batches.empty() && channel_.remote_size() > 0) return arrival_;
   if (static_cast<int>(batches.size()) != channel_.remote_size())
-    throw BadMessage(fmt::format("some {} ranks left at interval {}, others did not",
-                                 channel_.remote_name(), next_interval_));
+    throw BadMessage(format("some {} ranks left at interval {}, others did not",
+                            channel_.remote_name(), next_interval_));
   merge(batches);
   ++next_interval_;
   return arrival_;
@@ -238,28 +237,45 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
   for (const Origin& o : origins) {
     const auto shape = shapes_.find(o.id);
     if (shape == shapes_.end())
-      throw BadMessage(fmt::format("particle {} came without radius and mass at interval {}", o.id,
-                                   next_interval_));
+      throw BadMessage(
+          format("particle {} came without radius and mass at interval {}", o.id, next_interval_));
     if (!present.emplace(o.id, shape->second).second)
-      throw BadMessage(fmt::format("particle {} came twice at interval {}", o.id, next_interval_));
+      throw BadMessage(format("particle {} came twice at interval {}", o.id, next_interval_));
     order_[o.rank][o.record] = arrival_.particles.size();
     arrival_.particles.push_back({batches[o.rank].states[o.record], shape->second});
   }
   if (const auto twice = std::adjacent_find(told.begin(), told.end()); twice != told.end())
     throw BadMessage(
-        fmt::format("two shapes of particle {} came at interval {}", *twice, next_interval_),
-        kBadInput);
+        format("two shapes of particle {} came at interval {}", *twice, next_interval_), kBadInput);
   for (const std::int64_t id : told)
     if (!present.contains(id))
-      throw BadMessage(fmt::format("a shape of particle {} came at interval {}, but no state of it",
-                                   id, next_interval_),
+      throw BadMessage(format("a shape of particle {} came at interval {}, but no state of it", id,
+                              next_interval_),
                        kBadInput);
   shapes_ = std::move(present);  // a particle that vanished must introduce itself again
   check_states(last, told);
 }
 
+namespace {
+
+/// @throws ProtocolError  where they are not one each a particle, in the same order
+void expect_loads_of(std::span<const Particle> particles, std::span<const Load> loads,
+                     std::int64_t interval) {
+  if (loads.size() != particles.size())
+    throw ProtocolError(format("the fluid computed {} loads for {} particles at interval {}",
+                               loads.size(), particles.size(), interval));
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    if (loads[i].id != particles[i].state.id)
+      throw ProtocolError(
+          format("the fluid computed a load of particle {} in place of {} at interval {}",
+                 loads[i].id, particles[i].state.id, interval));
+}
+
+}  // namespace
+
 void FluidSession::answer(std::span<const Load> loads, std::uint32_t flags) {
   const StepHeader head{arrival_.head.interval, arrival_.head.time, flags};
+  expect_loads_of(arrival_.particles, loads, head.interval);
   double largest = 0.0;
   for (const Load& load : loads) {
     expect_finite(load, load.force, "hydrodynamic force", head.interval);
@@ -363,17 +379,17 @@ void SolidSession::send_states(int rank, const StepHeader& head, std::span<const
 std::uint32_t SolidSession::add_loads(int rank) {
   const StepHeader& head = head_;
   const auto batch = decode<LoadBatch>(
-      channel_->receive(rank, {timeout_, fmt::format("the loads of interval {}", head.interval)}));
+      channel_->receive(rank, {timeout_, format("the loads of interval {}", head.interval)}));
   expect_interval(batch.head, head.interval, *channel_, rank);
   if (batch.loads.size() != sent_[rank].size())
-    throw BadMessage(fmt::format("fluid rank {} answered {} loads for {} particles at interval {}",
-                                 rank, batch.loads.size(), sent_[rank].size(), head.interval));
+    throw BadMessage(format("fluid rank {} answered {} loads for {} particles at interval {}", rank,
+                            batch.loads.size(), sent_[rank].size(), head.interval));
   for (std::size_t i = 0; i < batch.loads.size(); ++i) {
     const Load& part = batch.loads[i];
     Load& sum = loads_[sent_[rank][i]];
     if (part.id != sum.id)
-      throw BadMessage(fmt::format("fluid rank {} answered a load for particle {} in place of {}",
-                                   rank, part.id, sum.id));
+      throw BadMessage(format("fluid rank {} answered a load for particle {} in place of {}", rank,
+                              part.id, sum.id));
     expect_finite(part, part.force, "hydrodynamic force", head.interval);
     expect_finite(part, part.torque, "hydrodynamic torque", head.interval);
     for (int k = 0; k < 3; ++k) {

@@ -43,7 +43,9 @@ class FluidSession {
   /// @throws BadMessage  wrong interval, unknown shape, double id, what ArrivalCheck refuses
   const Arrival& receive();
 
-  /// Answers the last arrival. @param loads  in the order of its particles
+  /// Answers the last arrival.
+  /// @param loads  one each of its particles, in their order
+  /// @throws ProtocolError  they are not; BadMessage  one is not finite
   void answer(std::span<const Load> loads, std::uint32_t flags = kContinue);
 
   double waited() const { return waited_; }  ///< seconds spent in waits so far

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/wire/walls.h"
 
-#include <fmt/format.h>
+#include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
@@ -10,8 +10,8 @@ namespace {
 std::string name_of(const Hello& fluid, int side) {
   static const char* const names[] = {"left", "right", "bottom", "top", "back", "front"};
   const int axis = side / 2;
-  return fmt::format("{} ({} = {:.6g} m)", names[side], "xyz"[axis],
-                     side % 2 == 0 ? fluid.box_lo[axis] : fluid.box_hi[axis]);
+  return format("{} ({} = {:.6g} m)", names[side], "xyz"[axis],
+                side % 2 == 0 ? fluid.box_lo[axis] : fluid.box_hi[axis]);
 }
 
 }  // namespace
@@ -24,24 +24,24 @@ std::vector<std::string> one_sided_walls(const Hello& fluid, const Hello& solid)
     const bool of_solid = (*solid.sides)[side] != SideWall::None;
     if (of_fluid && !of_solid)
       found.push_back(
-          fmt::format("side {} is a wall for the fluid, no plane wall of the solid lies there: "
-                      "particles that reach it leave the box; if they shall not, add one",
-                      name_of(fluid, static_cast<int>(side))));
+          format("side {} is a wall for the fluid, no plane wall of the solid lies there: "
+                 "particles that reach it leave the box; if they shall not, add one",
+                 name_of(fluid, static_cast<int>(side))));
     if (of_solid && !of_fluid)
       found.push_back(
-          fmt::format("side {} is a wall for the particles and open for the fluid, as a sieve",
-                      name_of(fluid, static_cast<int>(side))));
+          format("side {} is a wall for the particles and open for the fluid, as a sieve",
+                 name_of(fluid, static_cast<int>(side))));
   }
   for (const std::string& body : solid.bodies)
     found.push_back(
-        fmt::format("{} is a wall for the particles only: the fluid does not see it and flows "
-                    "through; if it shall not, add an obstacle to the scene",
-                    body));
+        format("{} is a wall for the particles only: the fluid does not see it and flows "
+               "through; if it shall not, add an obstacle to the scene",
+               body));
   if (!fluid.bodies.empty() && solid.bodies.empty())
     found.push_back(
-        fmt::format("{}: there for the fluid only, particles pass through; if they shall not, add "
-                    "walls to the solid",
-                    fmt::join(fluid.bodies, ", ")));
+        format("{}: there for the fluid only, particles pass through; if they shall not, add "
+               "walls to the solid",
+               join(fluid.bodies, ", ")));
   return found;
 }
 

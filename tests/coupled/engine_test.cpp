@@ -19,11 +19,13 @@ std::string command(const std::string& engine) {
   const std::string script = kEngines + "conformance/in." + engine + " -screen none -log none";
   if (engine == "liggghts") return test::kLiggghts + " -in " + script;
   if (engine == "lammps") return test::kBin + "/lammps_engine -in " + script;
-  if (engine == "reference") return test::kBin + "/reference_engine";
+  if (engine == "reference" || engine == "c" || engine == "fortran")
+    return test::kBin + "/" + engine + "_engine";
   return kPython + kEngines + engine + "/engine.py";
 }
 
 bool installed(const std::string& engine) {
+  if (engine == "fortran") return std::filesystem::exists(test::kBin + "/fortran_engine");
   return engine != "yade" || std::filesystem::exists("/usr/bin/yade");
 }
 
@@ -32,7 +34,8 @@ const std::string kJudge = "exec " + test::kBin + "/bplbm-conformance ";
 class EngineTest : public testing::TestWithParam<std::string> {
  protected:
   EngineTest() {
-    if (!installed(GetParam())) skip_ = GetParam() + " is not installed (apt-get install yade)";
+    if (!installed(GetParam()))
+      skip_ = GetParam() + " is not installed (apt-get install yade gfortran)";
   }
   void judge(const std::string& options) const {
     if (!skip_.empty()) GTEST_SKIP() << skip_;
@@ -50,7 +53,8 @@ TEST_P(EngineTest, PassesEveryCheck) {
   judge("--jobs 6");
 }
 INSTANTIATE_TEST_SUITE_P(All, EngineTest,
-                         testing::Values("liggghts", "lammps", "yade", "reference", "python"),
+                         testing::Values("liggghts", "lammps", "yade", "reference", "python", "c",
+                                         "fortran"),
                          [](const auto& info) { return info.param; });
 
 class EngineOfManyRanks : public EngineTest {};
@@ -59,7 +63,8 @@ TEST_P(EngineOfManyRanks, PassesWithTwoOnBothSides) {
       "--jobs 4 --fluid-ranks 2 --solid-ranks 2 "
       "move mass collide corner vanish late epoch checkpoint density fail fault end end_left");
 }
-INSTANTIATE_TEST_SUITE_P(All, EngineOfManyRanks, testing::Values("liggghts", "lammps", "python"),
+INSTANTIATE_TEST_SUITE_P(All, EngineOfManyRanks,
+                         testing::Values("liggghts", "lammps", "python", "c"),
                          [](const auto& info) { return info.param; });
 
 // ---- the judge ----------------------------------------------------------------------------------

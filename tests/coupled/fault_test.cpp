@@ -363,10 +363,11 @@ TEST(Launch, TheSolidTwice) {
 
 TEST(Launch, TheSystemsStockLiggghts) {
   SettlingDisc scene;
+  scene.change_scene("timeout = 60.0", "timeout = 60.0\nconnect_timeout = 3.0");
   expect_end(test::run(mpirun({kLbm}, {"/usr/bin/liggghts -in in.liggghts"}), scene.folder(), 30.0),
              1,
-             {"lbm | error | rank(s) 1 of this MPI job did not say",
-              "the system's stock liggghts cannot couple"});
+             {"lbm | error | rank(s) 1 of this MPI job did not say within 3 s",
+              "the system's stock liggghts cannot couple", "coupling.connect_timeout = SECONDS"});
 }
 
 TEST(Launch, AStranger) {
@@ -376,9 +377,23 @@ TEST(Launch, AStranger) {
                "#include <mpi.h>\n#include <unistd.h>\nint main(int c, char** v) { MPI_Init(&c, "
                "&v); sleep(100); }\n");
   ASSERT_EQ(test::run("mpicc stranger.c -o stranger", folder.path(), 60.0).exit_code, 0);
-  expect_end(test::run(mpirun({folder.path() + "/stranger"}, {kLiggghts + " -screen none"}),
+  expect_end(test::run("export BPLBM_CONNECT_TIMEOUT=3; " +
+                           mpirun({folder.path() + "/stranger"}, {kLiggghts + " -screen none"}),
                        scene.folder(), 30.0),
              1, {"liggghts | error | rank(s) 0 of this MPI job did not say"});
+}
+
+// Two solid ranks that start one after the other: whoever is there waits for the slower one.
+TEST(Launch, ASlowEngineIsWaitedForAsLongAsTheSceneSays) {
+  SettlingDisc scene;
+  const std::string slow =
+      "sh -c 'sleep $((4 * OMPI_COMM_WORLD_RANK - 3)); exec " + test::kBin + "/c_engine'";
+  scene.change_scene("timeout = 60.0", "timeout = 60.0\nconnect_timeout = 2.0");
+  expect_end(test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0), 1,
+             {"lbm | error | rank(s) 2 of this MPI job did not say within 2 s"});
+  scene.change_scene("connect_timeout = 2.0", "connect_timeout = 20.0");
+  const auto job = test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0);
+  EXPECT_EQ(job.exit_code, 0) << job.output;
 }
 
 /// Whatever the screen is: what LIGGGHTS says of its end reaches the fluid, without a source file.

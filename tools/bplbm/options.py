@@ -12,7 +12,7 @@ from bplbm.scenes import Unknown, find, scenes
 
 BAD_INPUT = 2
 MOST_THREADS = 1024
-ENGINES = ("liggghts", "lammps", "yade", "reference", "python")
+ENGINES = ("liggghts", "lammps", "yade", "reference", "python", "c", "fortran")
 
 
 def fail(text, code=BAD_INPUT):
@@ -62,7 +62,7 @@ def parser():
     p.add_argument("--solid-ranks", type=whole, default=1, metavar="M")
     p.add_argument("--threads", type=whole, default=1, metavar="T", help=f"of the fluid; at most {MOST_THREADS}")
     p.add_argument("--engine", choices=ENGINES, help="who moves the particles (default: liggghts); yade suits particles of one "
-                   "size without a script, reference and python free discs")
+                   "size without a script, reference, python, c and fortran free discs")
     p.add_argument("--engine-command", metavar="'COMMAND'", help="any other program that does; in its words {folder} is the "
                    "scene's folder and {out} the output folder")
     p.add_argument("--until", type=seconds, metavar="SECONDS", help="stop at this physical time")

@@ -45,8 +45,8 @@ def solid_command(args, out):
     if args.engine_command:
         places = {"{folder}": str(args.scene.folder), "{out}": str(out)}
         return [re.sub(r"\{folder\}|\{out\}", lambda found: places[found[0]], word) for word in args.engine_command]
-    if args.engine == "reference":
-        return [str(BIN / "reference_engine")]
+    if args.engine in ("reference", "c", "fortran"):
+        return [str(BIN / f"{args.engine}_engine")]
     if args.engine in ("python", "yade"):
         return ["/usr/bin/python3", str(TOOLS / "engines" / args.engine / "engine.py")]
     script = args.scene.script(args.engine)
@@ -82,7 +82,7 @@ def run_alone(args, out):
     if args.force:
         output_folder.remove_run(out)
     script, begin = args.scene.script("liggghts"), time.monotonic()
-    code = start(solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks)
+    code = start(solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks, out)
     if code == 0:
         solid_alone.write_summary(out, args.scene.name, args.set, label(args), found, time.monotonic() - begin)
     elif said := solid_alone.error_in(out / "liggghts.log"):
@@ -94,19 +94,24 @@ def run_job(args, out):
     """The job in a folder of ours. Returns its exit code."""
     if args.scene.is_solid_alone:
         return run_alone(args, out)
-    code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks)
+    code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks, out)
     if code == 0:
         add_solid_waiting(out)
     return code
 
 
-def start(line, processes):
-    """Runs an mpirun line to its end. Returns its exit code."""
+def start(line, processes, out):
+    """Runs an mpirun line to its end; where it fails, error.log in the output folder is what it said. Returns its exit code."""
     env = environment(processes)
     added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)
     print(f"run | {added + ' ' if added else ''}{shlex.join(line)}", flush=True)
     job = MpiJob(line, env)
     code = job.run()
+    log = out / "error.log"
+    if code and out.is_dir():
+        log.write_text("".join(job.said))
+    else:
+        log.unlink(missing_ok=True)
     if job.stopped:
         print("run | stopped: the job was told to end", file=sys.stderr)
         return STOPPED
@@ -146,11 +151,16 @@ def draw(scene, out, until):
          f"(its whole message is in {out / 'plot.log'}; the run's numbers are complete)", FAULT)
 
 
-def make_page(args, out):
-    """index.html of the run; without one says why, for the run is complete all the same."""
+def make_page(args, out, failed=0):
+    """index.html of the run, or of one that failed with an exit code; without one says why, for the run is what it is."""
     try:
+        about = out, args.scene, scene_files(args), args.words, command(args, out)
+        if failed:
+            from bplbm.page.failed import write_failed_page
+            print(f"run | page {write_failed_page(*about, failed)}", file=sys.stderr)
+            return
         from bplbm.page.run import write_page
-        print(f"run | page {write_page(out, args.scene, scene_files(args), args.words, command(args, out))}")
+        print(f"run | page {write_page(*about)}")
     except Exception as error:  # noqa: BLE001
         print(f"run | warning | no page was made: {type(error).__name__}: {error}; the run's numbers are complete",
               file=sys.stderr)
@@ -255,6 +265,8 @@ def go(args, others, out):
         if (out / "fault.h5").exists():
             print("run | states of the fault are kept (fault.*): --restart=fault goes on from them if both sides' are",
                   file=sys.stderr)
+        if code in (1, 3) and not args.no_page and not args.scene.is_solid_alone:
+            make_page(args, out, code)
         return code
     try:
         draw(args.scene, out, args.until is not None)

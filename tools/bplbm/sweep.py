@@ -14,7 +14,6 @@ import hashlib
 import json
 import os
 import pathlib
-import re
 import signal
 import subprocess
 import sys
@@ -22,6 +21,7 @@ import threading
 import time
 
 from bplbm import output_folder
+from bplbm.mpi_job import reason_of
 from bplbm.options import arguments, label, out_folder, scene_files, whole
 from bplbm.project import TOOLS, tool
 from bplbm.scenes import scenes
@@ -100,14 +100,6 @@ def made_of(args, overlay):
     return digest.hexdigest()[:16]
 
 
-def reason_of(log):
-    """The last error of a run, without the program's name; else its last line."""
-    errors = re.findall(r"^\w+ \| error \| (.*)$", log, re.M)
-    ours = [e for e in errors if not e.startswith("the fluid program stopped")]
-    lines = [line for line in log.splitlines() if line.strip()]
-    return (ours or errors or lines or ["nothing was said"])[-1][:400]
-
-
 def results_of(folder):
     """Results, quantities and costs of a finished run: dict "name [unit]" -> number."""
     from bplbm.quantities import default_quantities
@@ -150,7 +142,7 @@ class Runner:
             return
         text = (folder / "logs" / f"{name}.log").read_text(errors="replace")
         row = {"values": chosen, "made_of": hashed, "code": code, "seconds": round(time.monotonic() - start, 2),
-               "reason": "" if code in ANSWERED else reason_of(text),
+               "reason": "" if code in ANSWERED else reason_of(text)[:400],
                "results": results_of(folder / name) if code in ANSWERED else {}}
         self.table.add(name, row)
         reason = f" | {row['reason']}" if row["reason"] else ""

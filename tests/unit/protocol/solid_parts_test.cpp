@@ -67,7 +67,7 @@ TEST_F(SolidPartsTest, SaysWhichFileCannotBeWritten) {
   try {
     write(parts, 3);
     FAIL() << "no error";
-  } catch (const ProtocolError& error) {
+  } catch (const ProgramError& error) {
     EXPECT_NE(std::string(error.what()).find("nowhere/checkpoint.3.solid cannot be written"),
               std::string::npos)
         << error.what();

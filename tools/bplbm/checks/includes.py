@@ -21,10 +21,11 @@ LBM = {
     "main.cpp": {"base", "lattice", "field", "collision", "immersed", "solver", "io", "coupling"},
 }
 # The same of protocol/; its main programs may use all of them.
-PROTOCOL = {"wire": set(), "program": {"wire"}, "transport": {"wire", "program"}}
+PROTOCOL = {"wire": set(), "program": {"wire"}, "transport": {"wire", "program"},
+            "solid": {"wire", "program", "transport"}}
 # Library header (prefix) -> files that may use it.
 ONLY = {
-    "mpi.h": r"protocol/(transport/mpi_channel|program/(mpi_calls|program)).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
+    "mpi.h": r"protocol/(transport/mpi_channel|program/(mpi_calls|program)|solid/).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
     "hdf5": r"protocol/transport/(hdf5_file|trace).*|lbm_solver/io/field_writer\.cpp",
     "lammps": r"liggghts_coupling/(host|bond)/.*",
     "atom.h": r"liggghts_coupling/(host|bond)/.*",

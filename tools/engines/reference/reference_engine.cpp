@@ -33,13 +33,13 @@ class Offer {
   double number(const std::string& name) const {
     const auto found = values_.find(name);
     if (found == values_.end())
-      throw ProtocolError(fmt::format("the fluid offers no variable '{}'", name), kBadInput);
+      throw ProgramError(fmt::format("the fluid offers no variable '{}'", name), kBadInput);
     const auto value = to_number<double>(found->second);
     if (!value)
-      throw ProtocolError(fmt::format("the fluid's variable '{}' = '{}' is no number; correct "
-                                      "[particles.variables] of the scene",
-                                      name, found->second),
-                          kBadInput);
+      throw ProgramError(fmt::format("the fluid's variable '{}' = '{}' is no number; correct "
+                                     "[particles.variables] of the scene",
+                                     name, found->second),
+                         kBadInput);
     return *value;
   }
   double number_or(const std::string& name, double otherwise) const {
@@ -115,7 +115,7 @@ class Discs {
       states = std::move(batch.states);
       shapes = std::move(batch.shapes);
     } catch (const BadMessage& error) {
-      throw ProtocolError(file + " is no checkpoint of this engine: " + error.what(), kBadInput);
+      throw ProgramError(file + " is no checkpoint of this engine: " + error.what(), kBadInput);
     }
   }
 
@@ -257,7 +257,7 @@ int main(int argc, char** argv) {
   try {
     world = connect(Role::Solid);
     if (!world.coupled())
-      throw ProtocolError(
+      throw ProgramError(
           "no fluid program was started beside it; start: mpirun -np 1 lbm scene.toml : -np 1 "
           "reference_engine",
           kBadInput);
