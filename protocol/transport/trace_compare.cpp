@@ -201,7 +201,7 @@ std::string TraceComparison::text() const {
   if (!first_) return "identical, bit for bit";
   const std::string first =
       format("first difference at interval {}, particle {}, {}: {:.17g} against {:.17g}; ",
-                  first_->interval, first_->id, first_->field, first_->a, first_->b);
+             first_->interval, first_->id, first_->field, first_->a, first_->b);
   if (!scale_.physical) return first + format("largest relative difference {:.3g}", largest());
   const auto& [x, v, omega, force, torque] = largest_;
   return first +
