@@ -386,11 +386,11 @@ TEST(Launch, AStranger) {
 // Two solid ranks that start one after the other: whoever is there waits for the slower one.
 TEST(Launch, ASlowEngineIsWaitedForAsLongAsTheSceneSays) {
   SettlingDisc scene;
-  const std::string slow =
-      "sh -c 'sleep $((4 * OMPI_COMM_WORLD_RANK - 3)); exec " + test::kBin + "/c_engine'";
+  const std::string slow = test::kBin + "/leaving_solid slow 3";  // ranks 1 and 2 of the job
   scene.change_scene("timeout = 60.0", "timeout = 60.0\nconnect_timeout = 2.0");
   expect_end(test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0), 1,
-             {"lbm | error | rank(s) 2 of this MPI job did not say within 2 s"});
+             {"lbm | error | rank(s) 1 2 of this MPI job did not say within 2 s",
+              "coupling.connect_timeout = SECONDS in the scene"});
   scene.change_scene("connect_timeout = 2.0", "connect_timeout = 20.0");
   const auto job = test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0);
   EXPECT_EQ(job.exit_code, 0) << job.output;
