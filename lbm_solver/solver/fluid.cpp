@@ -55,6 +55,15 @@ void Fluid::ramp_body_force(const InTime& in_time) {
   set_body_force();
 }
 
+void Fluid::set_body_force(const Vec3& force) {
+  BPLBM_EXPECT(choice_.force);
+  CollisionParameters& p = choice_.parameters;
+  p.force_x = force.x();
+  p.force_y = force.y();
+  p.force_z = force.z();
+  set_body_force();
+}
+
 /// That of the coming step. A kernel knows one force: while the force comes up, every step has a
 /// kernel of its own.
 void Fluid::set_body_force() {

@@ -63,6 +63,8 @@ class Fluid {
   }
   /// The body force of the kernel's choice comes up as `in_time` says.
   void ramp_body_force(const InTime& in_time);
+  /// Another one from the coming step on. The kernel's choice must have one.
+  void set_body_force(const Vec3& force);
   /// On a cell in the coming step.
   Vec3 body_force() const;
   /// To be called after the last wall was added.

@@ -288,7 +288,7 @@ void choose_kernel(const Scene& s, Plan& plan) {
             ": numerics.collision = \"recursive_regularised\" is there in double precision only",
         "take central_moment, or precision = \"double\"");
   k.turbulence = n.smagorinsky > 0.0 ? "smagorinsky" : "none";
-  k.force = s.fluid.body_force.norm() > 0.0;
+  k.force = s.fluid.body_force.norm() > 0.0 || (s.coupling && s.coupling->carry_weight);
   choose_solids(s, plan);
   const Vec3 force = s.fluid.body_force * (dt * dt / dx);
   k.parameters = {0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),
