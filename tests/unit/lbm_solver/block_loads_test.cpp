@@ -12,7 +12,8 @@ constexpr double kForce = 1e-6;
 /// A fluid that a force drives along x past blocks, until nothing changes any more.
 Fluid steady(const Domain& domain, const char* lattice, const std::vector<CellBox>& blocks,
              int steps) {
-  KernelChoice choice{"trt", "none", true, "resistance", {.tau = 0.8, .force_x = kForce}};
+  KernelChoice choice{
+      .force = true, .solid_term = "resistance", .parameters = {.tau = 0.8, .force_x = kForce}};
   choice.lattice = lattice;
   Fluid fluid(domain, choice);
   for (const CellBox& block : blocks) fluid.add_wall(block.from, block.to);
