@@ -80,7 +80,7 @@ struct NumericsScene {
   bool single = false;                       ///< populations in single precision
   std::string collision = "auto";            ///< see solver/plan.h for what auto takes
   std::string solid_term = "auto";
-  std::string scheme = "auto";      ///< one of known_schemes()
+  std::string scheme = "auto";      ///< auto, or the name of a SolidScheme
   double spring_stiffness = 0.001;  ///< of the spring scheme, lattice units
   std::string weight = "auto";      ///< viscous, balanced or fraction; auto: viscous, balanced
   std::optional<double> magic;      ///< Λ of TRT; absent: see solver/plan.h

@@ -27,7 +27,7 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
                  ? nullptr
                  : std::make_unique<CoverMap>(
                        domain(), cells(), radius_shift(choice.solid_term, domain().dimension()))),
-      medium_{choice.parameters, choice.turbulence != "none", cover_.get(),
+      medium_{choice.parameters, choice.local_viscosity(), cover_.get(),
               SolidShare(choice.solid_term, choice.weight, choice.parameters)},
       two_steps_(load_lag(choice.solid_term, choice.parameters.tau)) {
   if (!choice.force) {

@@ -13,7 +13,8 @@ constexpr double kForce = 1e-6;
 /// A fluid that a force drives along x past blocks, until nothing changes any more.
 Fluid steady(const Domain& domain, const char* lattice, const std::vector<CellBox>& blocks,
              int steps) {
-  KernelChoice choice{"trt", "none", true, "resistance", {.tau = 0.8, .force_x = kForce}};
+  KernelChoice choice{
+      .force = true, .solid_term = "resistance", .parameters = {.tau = 0.8, .force_x = kForce}};
   choice.lattice = lattice;
   Fluid fluid(domain, choice);
   for (const CellBox& block : blocks) fluid.add_wall(block.from, block.to);
@@ -56,7 +57,8 @@ TEST(BlockLoads, AreTheSameWithinARegion) {
   omp_set_num_threads(2);
   const Domain channel{30, 16, Side::Periodic, Side::Wall};
   const CellBox block{{10, 3, 0}, {18, 8, 1}};
-  KernelChoice choice{"trt", "none", true, "resistance", {.tau = 0.8, .force_x = kForce}};
+  KernelChoice choice{
+      .force = true, .solid_term = "resistance", .parameters = {.tau = 0.8, .force_x = kForce}};
   Fluid one(channel, choice), together(channel, choice);
   for (Fluid* fluid : {&one, &together}) {
     fluid->add_wall(block.from, block.to);
@@ -83,7 +85,8 @@ TEST(BlockLoads, AreTheSameWithinARegion) {
 // Bodies, whose loads are of two steps, beside a block.
 TEST(BlockLoads, GoWithTheLoadsOfBodies) {
   const Domain channel{30, 16, Side::Periodic, Side::Wall};
-  KernelChoice choice{"trt", "none", true, "resistance", {.tau = 0.8, .force_x = kForce}};
+  KernelChoice choice{
+      .force = true, .solid_term = "resistance", .parameters = {.tau = 0.8, .force_x = kForce}};
   Fluid one(channel, choice), together(channel, choice);
   const std::vector<Body> disc{{1, {22.3, 8.1, 0.0}, 3.1, {}, {}}};
   std::vector<double> step_by_step, in_one_call;

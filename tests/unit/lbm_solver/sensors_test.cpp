@@ -22,7 +22,7 @@ constexpr int kHeight = 16, kLength = 5;
 /// Flow between plates across y under a force along x, until it is steady; Λ = 3/16 puts the
 /// plates exactly half-way.
 Fluid poiseuille(Side x = Side::Periodic, int length = kLength) {
-  KernelChoice choice{"trt", "none", true, "none", {.tau = kTau, .force_x = kForce}};
+  KernelChoice choice{.force = true, .parameters = {.tau = kTau, .force_x = kForce}};
   Fluid fluid({length, kHeight, x, Side::Wall}, choice);
   fluid.advance(20000);
   return fluid;
@@ -55,7 +55,8 @@ TEST(PlaneFlow, OfAChannelIsTheParabolaInEveryColumn) {
 // Past a block in a channel, where the force drives, the same flow passes every plane, through the
 // block's sides too.
 TEST(PlaneFlow, IsTheSameThroughEveryPlaneOfASteadyFlow) {
-  KernelChoice choice{"trt", "none", true, "resistance", {.tau = kTau, .force_x = kForce}};
+  KernelChoice choice{
+      .force = true, .solid_term = "resistance", .parameters = {.tau = kTau, .force_x = kForce}};
   Fluid fluid({12, kHeight, Side::Periodic, Side::Wall}, choice);
   fluid.add_wall({4, 4, 0}, {7, 9, 1});
   fluid.prepare_walls();
@@ -99,7 +100,7 @@ TEST(SideLoads, TakeThePressureOfAClosedBox) {
 
 // A plate that moves with U drags the fluid along: ρ ν U/H a cell, and the resting one holds it.
 TEST(SideLoads, OfAMovingPlateAreThoseOfCouetteFlow) {
-  KernelChoice choice{"trt", "none", false, "none", {.tau = kTau}};
+  KernelChoice choice{.parameters = {.tau = kTau}};
   Fluid fluid({kLength, kHeight, Side::Periodic, Side::Wall}, choice);
   const double speed = 0.01;
   const Opening top = Opening::whole(fluid.domain(), SideName::Top);
