@@ -130,7 +130,7 @@ TEST(Judge, AnswersMistakesOfItsCommandLine) {
   test::expect_end(run("moves -- true"), 20.0, 2, {"no check is called 'moves'"});
   test::expect_end(run("stop --launcher no_mpirun -- true"), 20.0, 1, {"no_mpirun not found"});
   test::expect_end(run("stop --timeout 2 -- sleep 60"), 20.0, 1, {"does not end within 2 s"});
-  test::expect_end(run("stop -- true"), 20.0, 1, {"0 of 1 checks passed"});
+  test::expect_end(run("stop --timeout 2 -- true"), 20.0, 1, {"0 of 1 checks passed"});
 }
 
 // As FixTest has it for LIGGGHTS: deleting the first disc gives its id to the second.
