@@ -136,6 +136,13 @@ TEST(FailingSolid, InCTellsTheFluidAtEveryStage) {
                 "lbm | error | the solid program stopped: has had enough"});
 }
 
+// One rank imports slowly: the others, whose own patience is a second, wait as the scene says.
+TEST(PythonStart, WaitsForAsLongAsTheSceneSays) {
+  const Scene scene;
+  const std::string solid = "env BPLBM_CONNECT_TIMEOUT=1 " + kPython + "late farewell";
+  expect_end(test::run(scene.job(solid, 1, 2), scene.folder(), 30.0), 0, {"ending       complete"});
+}
+
 TEST(LeavingFluid, EndsLiggghts) {
   Scene scene;
   const auto job =

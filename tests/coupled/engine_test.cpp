@@ -130,7 +130,7 @@ TEST(Judge, AnswersMistakesOfItsCommandLine) {
   test::expect_end(run("moves -- true"), 20.0, 2, {"no check is called 'moves'"});
   test::expect_end(run("stop --launcher no_mpirun -- true"), 20.0, 1, {"no_mpirun not found"});
   test::expect_end(run("stop --timeout 2 -- sleep 60"), 20.0, 1, {"does not end within 2 s"});
-  test::expect_end(run("stop -- true"), 20.0, 1, {"0 of 1 checks passed"});
+  test::expect_end(run("stop --timeout 2 -- true"), 20.0, 1, {"0 of 1 checks passed"});
 }
 
 // As FixTest has it for LIGGGHTS: deleting the first disc gives its id to the second.
@@ -256,6 +256,28 @@ TEST(Recording, OfOneEngineIsFollowedByEveryOther) {
                   folder.path(), 60.0);
     EXPECT_EQ(job.exit_code, 0) << engine << job.output;
     EXPECT_NE(job.output.find("replay | states | "), std::string::npos) << engine << job.output;
+  }
+}
+
+// Three discs in an L, joined by YADE's own cohesive bonds: the fluid hears what becomes of them.
+TEST(Yade, BondsHoldOrBreakAndTheFluidIsTold) {
+  if (!installed("yade")) GTEST_SKIP() << "yade is not installed";
+  const test::TemporaryFolder folder;
+  for (const auto& [strength, told] :
+       {std::pair{"1.0", "bonds 2 (broken by tension 0, by shear 0)"},
+        {"0.01", "bonds 0 (broken by tension 2, by shear 0)"}}) {
+    folder.write("bonded.toml",
+                 "[particles]\nstart = [[0.01, 0.04], [0.01, 0.0425], [0.0125, 0.0425]]\n"
+                 "[particles.variables]\nbonded = 1\nbond_strength = " +
+                     std::string(strength) +
+                     "\n[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.1\n");
+    const auto job =
+        test::run(test::mpirun({test::kLbm + " " BPLBM_SOURCE_DIR "/cases/settling_disc/scene.toml "
+                                             "bonded.toml --progress none --out out --force"},
+                               {command("yade")}),
+                  folder.path(), 60.0);
+    EXPECT_EQ(job.exit_code, 0) << job.output;
+    EXPECT_NE(job.output.find(told), std::string::npos) << job.output;
   }
 }
 

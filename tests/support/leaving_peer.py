@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
 """leaving_peer.py STAGE HOW: a solid on bplbm_solid that leaves at a stage (connected, agreed, states, running, last,
 goodbye, block, refused) by MPI_Finalize only (finalize), by exit, or with its farewell. Its box is that of settling_disc.
+At the stage `late` its last rank of several begins three seconds after the others, and all go on to the end.
 """
 
 import os
 import sys
+import time
 
 import bplbm_solid
 import numpy as np
@@ -24,6 +26,8 @@ def leave(fluid):
     sys.exit(0)
 
 
+if stage == "late" and MPI.COMM_WORLD.rank == MPI.COMM_WORLD.size - 1:
+    time.sleep(3)
 fluid = bplbm_solid.Solid("leaving_peer").__enter__()
 if stage == "connected":
     leave(fluid)
@@ -37,6 +41,8 @@ if stage == "agreed":
     leave(fluid)
 states = np.array([(4, (0.01, 0.04, 0), (0, 0, 0), (0, 0, 0))], bplbm_solid.STATE)
 shapes = np.array([bplbm_solid.disc(4, 0.00125, 1250.0, 1.0)])
+if fluid.rank > 0:
+    states, shapes = states[:0], shapes[:0]
 if stage == "states":
     fluid._channel.receive = lambda *_: leave(fluid)  # in place of the loads
 while fluid.exchange(states, shapes) is not None:
