@@ -143,10 +143,10 @@ Decomposition divide(const Options& o, const Scene& scene, const Plan& plan, MPI
   int size = 0;
   MPI_Comm_size(comm, &size);
   if (size == 1) return Decomposition(plan.domain);
-  if (plan.scheme != known_schemes().front())
-    throw InputError(
-        fmt::format("{}: numerics.scheme = \"{}\" works on one rank only", scene.file, plan.scheme),
-        "start one lbm, or take immersed_moving_boundary");
+  if (plan.scheme != SolidScheme::ImmersedMovingBoundary)
+    throw InputError(fmt::format("{}: numerics.scheme = \"{}\" works on one rank only", scene.file,
+                                 name_of(plan.scheme)),
+                     "start one lbm, or take immersed_moving_boundary");
   try {
     const Cell3 grid =
         o.grid.empty() ? choose_grid(plan.domain, size) : Cell3{o.grid[0], o.grid[1], o.grid[2]};

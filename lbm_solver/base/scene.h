@@ -80,7 +80,7 @@ struct NumericsScene {
   bool single = false;                       ///< populations in single precision
   std::string collision = "auto";            ///< see solver/plan.h for what auto takes
   std::string solid_term = "auto";
-  std::string scheme = "auto";      ///< one of known_schemes()
+  std::string scheme = "auto";      ///< auto, or the name of a SolidScheme
   double spring_stiffness = 0.001;  ///< of the spring scheme, lattice units
   std::string weight = "auto";      ///< viscous, balanced or fraction; auto: viscous, balanced
   std::optional<double> magic;      ///< Λ of TRT; absent: see solver/plan.h
@@ -102,16 +102,41 @@ struct CouplingScene {
   bool inner_inertia = true;    ///< correct for the inertia of the fluid inside a particle
   protocol::Buoyancy buoyancy = protocol::Buoyancy::ByFluid;
   std::optional<double> virtual_mass;  ///< over covered fluid; absent: where particles are light
+  /// A body force on the fluid carries the weight of all particles in it, whatever their number.
+  bool carry_weight = false;
   double lubrication_range = 0.0;      ///< gap below which it acts [cells]; 0: off
   bool overlapped = false;             ///< both programs at once, loads one interval old
   double timeout = 300.0;              ///< longest wait for the solid [s]
   double connect_timeout = 30.0;       ///< how long its program may take to start [s]
 };
 
+/// Something that is measured along the run and written to a table of its own.
+struct SensorScene {
+  enum class Kind { Line, Plane, Side };
+  Kind kind = Kind::Plane;
+  std::string name;  ///< of its table, sensor-NAME.csv
+  double every = 0;  ///< [s]; 0: every interval
+  Vec3 from, to;   ///< ends of a line; corners of the part of the box whose cells a plane takes [m]
+  int count = 20;  ///< places of a line
+  int axis = 0;    ///< normal of a plane
+  double at = 0.0;  ///< place of a plane along it [m]
+  SideName side = SideName::Left;
+};
+
+/// Mean values of the fields over time.
+struct AverageScene {
+  double from = 0.0;   ///< [s]
+  double every = 0.0;  ///< between two samples [s]; 0: every interval
+};
+
 struct OutputScene {
   double fields_every = 0.0;  ///< [s]; 0: none
   double probe_every = 0.0;   ///< [s]; 0: every interval
   std::vector<Vec3> points;   ///< places where pressure and velocity are written [m]
+  /// Numbers (ids) of the particles that have rows in the table of probes; empty: all.
+  std::vector<std::int64_t> probe_particles;
+  std::optional<AverageScene> average;
+  std::vector<SensorScene> sensors;
 };
 
 struct Scene {

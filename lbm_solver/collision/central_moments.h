@@ -3,6 +3,7 @@
 
 #include "lbm_solver/collision/forcing.h"
 #include "lbm_solver/collision/moment_basis.h"
+#include "lbm_solver/collision/moments.h"
 
 namespace lbm {
 
@@ -12,18 +13,19 @@ namespace lbm {
 /// trace and everything above at once to the Maxwellian's values (a factor 1/3 for each square,
 /// odd orders 0). A body force is the first moment: -F/2 before, +F/2 after, and the same times
 /// the Maxwellian's squares of the other axes.
-template <class L, class Turbulence, class Force>
+template <class L, class Viscosity, class Force>
 class CentralMoments {
  public:
   using Set = L;
   static constexpr bool constant_rates = false, fixed_magic = false;  ///< see TwoRates
-  explicit CentralMoments(const CollisionParameters& p) : turbulence_(p), force_(p) {}
+  explicit CentralMoments(const CollisionParameters& p) : viscosity_(p), force_(p) {}
 
-  static constexpr bool turbulent = Turbulence::on, forced = Force::on;
+  static constexpr bool local_viscosity = Viscosity::local, forced = Force::on;
   const Force& force() const { return force_; }
   template <class V>
-  [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m) const {
-    return turbulent_tau<L>(f, m, turbulence_, force_);
+  [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m,
+                                           const V& fluid) const {
+    return local_tau<L>(f, m, fluid, viscosity_, force_);
   }
 
   template <class V>
@@ -33,7 +35,7 @@ class CentralMoments {
     const Vector<L, V> u = velocity<L>(m, force_);
     // Only rho, u and the stress survive the collision; Q gives the stress directly.
     const Symmetric<L, V> q = non_equilibrium<L>(f, m.drho, u, force_);
-    const V keep = V(1.0) - V(1.0) / turbulence_.tau(q, rho);
+    const V keep = V(1.0) - viscosity_.rate(q, rho);
     Coefficients<L, V> k;
     k.each([&](auto a, auto b, auto c)
                __attribute__((always_inline)) { k.at[a][b][c] = after<a, b, c>(rho, keep, q); });
@@ -89,7 +91,7 @@ class CentralMoments {
     return 1.0 - others;
   }
 
-  Turbulence turbulence_;
+  Viscosity viscosity_;
   Force force_;
 };
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "lbm_solver/collision/equilibrium.h"
 #include "lbm_solver/collision/parameters.h"
-#include "lbm_solver/turbulence/smagorinsky.h"
+#include "lbm_solver/collision/tensors.h"
 
 namespace lbm {
 
@@ -62,46 +61,5 @@ class GuoForce {
  private:
   double at_[3];
 };
-
-/// Velocity of a cell, half a body force included.
-template <class L, class V, class Force>
-[[gnu::always_inline]] inline Vector<L, V> velocity(const Moments<L, V>& m, const Force& force) {
-  const V inverse = V(1.0) / (m.drho + V(1.0));
-  Vector<L, V> u = force.momentum(m.j);
-  unroll<L::D>([&](auto a) __attribute__((always_inline)) { u[a] *= inverse; });
-  return u;
-}
-
-/// Second moments of the non-equilibrium populations, Q_ab = Σ c_a c_b f - rho/3 δ_ab - rho u_a
-/// u_b, plus the force's part ½(F_a u_b + u_a F_b) where there is one.
-template <class L, class Force, class V>
-[[gnu::always_inline]] inline Symmetric<L, V> non_equilibrium(const V (&f)[L::Q], const V& drho,
-                                                              const Vector<L, V>& u,
-                                                              const Force& force) {
-  Symmetric<L, V> q;
-  const V rho = drho + V(1.0), third = V(1.0 / 3.0) * drho;
-  Symmetric<L, V>::each_pair([&](auto a, auto b) __attribute__((always_inline)) {
-    q.template get<a, b>() = a == b ? -third - rho * u[a] * u[a] : -rho * u[a] * u[b];
-  });
-  unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {
-    constexpr int i = 2 * p + 1;
-    const V sum = f[i] + f[i + 1];
-    Symmetric<L, V>::each_pair([&](auto a, auto b) __attribute__((always_inline)) {
-      constexpr int c = L::c[i][a] * L::c[i][b];
-      if constexpr (c == 1) q.template get<a, b>() += sum;
-      if constexpr (c == -1) q.template get<a, b>() -= sum;
-    });
-  });
-  if constexpr (Force::on) force.add_to(q, u);
-  return q;
-}
-
-/// Relaxation time of a cell's viscosity with its eddy viscosity.
-template <class L, class Turbulence, class Force, class V>
-[[gnu::always_inline]] inline V turbulent_tau(const V (&f)[L::Q], const Moments<L, V>& m,
-                                              const Turbulence& turbulence, const Force& force) {
-  return turbulence.tau(non_equilibrium<L>(f, m.drho, velocity<L>(m, force), force),
-                        m.drho + V(1.0));
-}
 
 }  // namespace lbm

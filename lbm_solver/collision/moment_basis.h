@@ -3,7 +3,7 @@
 /// collide in moment space.
 #pragma once
 
-#include "lbm_solver/collision/equilibrium.h"
+#include "lbm_solver/collision/tensors.h"
 
 namespace lbm {
 

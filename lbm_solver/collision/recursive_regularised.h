@@ -3,6 +3,7 @@
 
 #include "lbm_solver/collision/forcing.h"
 #include "lbm_solver/collision/moment_basis.h"
+#include "lbm_solver/collision/moments.h"
 
 namespace lbm {
 
@@ -11,18 +12,19 @@ namespace lbm {
 /// follow from the second order's: each pair of the term's velocities in turn gives way to Q,
 ///   a_abc… = rho u_a u_b u_c … + (1 - 1/τ) Σ_pairs Q_ab u_c …,
 /// e.g. Q_xx u_y + 2 u_x Q_xy for xxy. A body force adds S_i / 2.
-template <class L, class Turbulence, class Force>
+template <class L, class Viscosity, class Force>
 class RecursiveRegularised {
  public:
   using Set = L;
   static constexpr bool constant_rates = false, fixed_magic = false;  ///< see TwoRates
-  explicit RecursiveRegularised(const CollisionParameters& p) : turbulence_(p), force_(p) {}
+  explicit RecursiveRegularised(const CollisionParameters& p) : viscosity_(p), force_(p) {}
 
-  static constexpr bool turbulent = Turbulence::on, forced = Force::on;
+  static constexpr bool local_viscosity = Viscosity::local, forced = Force::on;
   const Force& force() const { return force_; }
   template <class V>
-  [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m) const {
-    return turbulent_tau<L>(f, m, turbulence_, force_);
+  [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m,
+                                           const V& fluid) const {
+    return local_tau<L>(f, m, fluid, viscosity_, force_);
   }
 
   template <class V>
@@ -31,7 +33,7 @@ class RecursiveRegularised {
     const V rho = m.drho + V(1.0);
     const Vector<L, V> u = velocity<L>(m, force_);
     Symmetric<L, V> q = non_equilibrium<L>(f, m.drho, u, force_);
-    const V keep = V(1.0) - V(1.0) / turbulence_.tau(q, rho);
+    const V keep = V(1.0) - viscosity_.rate(q, rho);
     for (V& part : q.at) part *= keep;
     Coefficients<L, V> a;
     a.each([&](auto x, auto y, auto z)
@@ -100,7 +102,7 @@ class RecursiveRegularised {
     return value;
   }
 
-  Turbulence turbulence_;
+  Viscosity viscosity_;
   Force force_;
 };
 

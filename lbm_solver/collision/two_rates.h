@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include "lbm_solver/collision/equilibrium.h"
 #include "lbm_solver/collision/forcing.h"
+#include "lbm_solver/collision/moments.h"
 
 namespace lbm {
 
@@ -15,6 +17,11 @@ struct EqualRates {
   [[gnu::always_inline]] V odd_tau(const V& tau) const {
     return tau;
   }
+  /// The odd rate of an even rate.
+  template <class V>
+  [[gnu::always_inline]] V odd_rate(const V& even_rate) const {
+    return even_rate;
+  }
 };
 
 /// TRT [Ginzburg 2008]: Λ = (τ⁺ - ½)(τ⁻ - ½) is kept. With Λ = 3/16 a half-way wall lies exactly
@@ -26,35 +33,42 @@ struct MagicRate {
   [[gnu::always_inline]] V odd_tau(const V& tau) const {
     return V(magic) / (tau - V(0.5)) + V(0.5);
   }
+  /// The odd rate of an even rate, ω⁻ = 2 (2 - ω⁺) / (4 Λ ω⁺ + 2 - ω⁺).
+  template <class V>
+  [[gnu::always_inline]] V odd_rate(const V& even_rate) const {
+    const V rest = V(2.0) - even_rate;
+    return V(2.0) * rest / (V(4.0 * magic) * even_rate + rest);
+  }
   double magic;
 };
 
 /// Relaxes the even and odd halves of the populations:
 ///   f± <- f± + ω± (f±^eq - f±) + (1 - ω±/2) S±,   ω⁺ = 1/τ, ω⁻ by the odd rule
 /// @param f  populations [q] that arrived, as deviations from rest; overwritten
-template <class L, class OddRule, class Turbulence, class Force>
+template <class L, class OddRule, class Viscosity, class Force>
 class TwoRates {
  public:
   using Set = L;
   explicit TwoRates(const CollisionParameters& p)
       : odd_rule_(p),
-        turbulence_(p),
+        viscosity_(p),
         force_(p),
         even_rate_(1.0 / p.tau),
         odd_rate_(1.0 / odd_rule_.odd_tau(p.tau)) {}
 
   /// The rates are the same in every cell, and nothing is added to the relaxation.
-  static constexpr bool constant_rates = !Turbulence::on && !Force::on;
+  static constexpr bool constant_rates = !Viscosity::local && !Force::on;
   /// Λ is the same in every cell: what a covered cell by resistance needs.
   static constexpr bool fixed_magic = OddRule::fixed_magic;
   double even_rate() const { return even_rate_; }
   double odd_rate() const { return odd_rate_; }
 
-  static constexpr bool turbulent = Turbulence::on, forced = Force::on;
+  static constexpr bool local_viscosity = Viscosity::local, forced = Force::on;
   const Force& force() const { return force_; }
   template <class V>
-  [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m) const {
-    return turbulent_tau<L>(f, m, turbulence_, force_);
+  [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m,
+                                           const V& fluid) const {
+    return local_tau<L>(f, m, fluid, viscosity_, force_);
   }
 
   template <class V>
@@ -62,10 +76,11 @@ class TwoRates {
     const Moments<L, V> m = moments<L>(f);
     const Vector<L, V> u = velocity<L>(m, force_);
     V even_rate(even_rate_), odd_rate(odd_rate_);
-    if constexpr (Turbulence::on) {
-      const V tau = turbulence_.tau(non_equilibrium<L>(f, m.drho, u, force_), m.drho + V(1.0));
-      even_rate = V(1.0) / tau;
-      odd_rate = V(1.0) / odd_rule_.odd_tau(tau);
+    if constexpr (Viscosity::local) {
+      const Symmetric<L, V> q = non_equilibrium<L>(f, m.drho, u, force_);
+      const Halves<V> rates = viscosity_.rates(q, m.drho + V(1.0), odd_rule_);
+      even_rate = rates.even;
+      odd_rate = rates.odd;
     }
     const Equilibrium<L, V> eq(m.drho, u);
     f[0] += even_rate * (eq.rest() - f[0]);
@@ -87,7 +102,7 @@ class TwoRates {
 
  private:
   OddRule odd_rule_;
-  Turbulence turbulence_;
+  Viscosity viscosity_;
   Force force_;
   double even_rate_, odd_rate_;
 };

@@ -20,7 +20,7 @@ ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decompo
   sums_.resize(lines + 1);
 }
 
-void ObstacleLoads::add(const Fluid& fluid, std::span<const BodyLoad> bodies) {
+void ObstacleLoads::add(Fluid& fluid, std::span<const BodyLoad> bodies) {
   const auto add_to = [this](int line, const BodyLoad& load) {
     sums_[line].force += load.force;
     sums_[line].torque += load.torque;
@@ -28,7 +28,7 @@ void ObstacleLoads::add(const Fluid& fluid, std::span<const BodyLoad> bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) add_to(line_[i], bodies[i]);
   if (!boxes_.empty()) {
     if (!blocks_) blocks_.emplace(fluid, boxes_);
-    const std::vector<BodyLoad> loads = blocks_->loads(fluid);
+    const std::vector<BodyLoad> loads = blocks_->loads();
     for (std::size_t i = 0; i < loads.size(); ++i) add_to(block_line_[i], loads[i]);
   }
   ++steps_;

@@ -23,7 +23,7 @@ class ObstacleLoads {
                 const std::string& folder, double keep_until);
 
   /// After each fluid step. @param bodies  this rank's loads in the order of obstacle_bodies
-  void add(const Fluid& fluid, std::span<const BodyLoad> bodies);
+  void add(Fluid& fluid, std::span<const BodyLoad> bodies);
   /// Collective.
   void write(double time);
 

@@ -95,6 +95,9 @@ class Particles {
   /// Where the bodies are `elapsed` seconds after the interval began, moving on straight.
   std::span<const Body> bodies(double elapsed);
 
+  /// Weight less buoyancy [N] of the particles whose home this rank is.
+  Vec3 weight_in_fluid() const;
+
   /// Masses of the bodies, lattice units.
   std::vector<double> masses() const;
 

@@ -85,6 +85,13 @@ std::string hydraulic_text(const ParticleScene& particles, double dx, bool flat)
       hi, lo / dx, flat ? "discs" : "spheres");
 }
 
+template <class Choice>
+std::vector<std::string> names_of(const std::vector<Choice>& choices) {
+  std::vector<std::string> names;
+  for (const Choice choice : choices) names.push_back(name_of(choice));
+  return names;
+}
+
 }  // namespace
 
 std::string describe_choices() {
@@ -93,9 +100,9 @@ std::string describe_choices() {
     out += fmt::format("{:<21} {}\n", key, fmt::join(names, ", "));
   };
   line("numerics.lattice", known_lattices());
-  line("numerics.collision", known_collisions());
+  line("numerics.collision", names_of(known_collisions()));
   line("numerics.solid_term", known_solid_terms());
-  line("numerics.scheme", known_schemes());
+  line("numerics.scheme", names_of(known_schemes()));
   return out + "or \"auto\"; lbm_solver/docs/scene.md has every key of a scene\n";
 }
 
@@ -142,9 +149,10 @@ std::string describe(const Scene& s, const Plan& p) {
                      p.interval(), p.fluid_steps, p.substeps, p.interval() / p.substeps,
                      p.substep_limit));
   if (!p.collision_reason.empty())
-    line("collision", fmt::format("{} [{}]", p.kernel.collision, p.collision_reason));
+    line("collision", fmt::format("{} [{}]", name_of(p.kernel.collision), p.collision_reason));
   if (!p.solid_reason.empty())
-    line("solids", fmt::format("{}, {} [{}]", p.scheme, p.kernel.solid_term, p.solid_reason));
+    line("solids",
+         fmt::format("{}, {} [{}]", name_of(p.scheme), p.kernel.solid_term, p.solid_reason));
   if (!p.expected_error.empty()) line("error", p.expected_error);
   line("duration", fmt::format("{:.6g} s = {} intervals", s.end_time, p.intervals));
   for (const std::string& w : p.warnings) line("warning", w);
@@ -152,7 +160,7 @@ std::string describe(const Scene& s, const Plan& p) {
 }
 
 std::string describe_cost(const Scene& s, const Plan& p) {
-  std::string on = p.kernel.lattice + ", collision " + p.kernel.collision, off;
+  std::string on = p.kernel.lattice + ", collision " + name_of(p.kernel.collision), off;
   const auto part = [&](bool used, const std::string& text, const std::string& absent) {
     std::string& list = used ? on : off;
     list += (list.empty() ? "" : ", ") + (used ? text : absent);
@@ -163,11 +171,11 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   part(!s.boundaries.empty(), "boundaries: " + boundary_text(s), "inlets and outlets");
   part(s.box.pressure_jump.norm() > 0.0, "pressure jump", "pressure jump");
   part(p.kernel.force, "body force", "body force");
-  part(p.kernel.turbulence != "none", "Smagorinsky turbulence", "turbulence model");
-  const bool imb = p.scheme == known_schemes().front();
+  part(p.kernel.parameters.smagorinsky > 0.0, "Smagorinsky turbulence", "turbulence model");
+  const bool imb = p.scheme == SolidScheme::ImmersedMovingBoundary;
   part(p.kernel.solid_term != "none" || !imb,
        imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel) + ", loads"
-           : p.scheme + ", loads",
+           : name_of(p.scheme) + ", loads",
        "solids");
   part(!s.obstacles.empty(), fmt::format("{} obstacles at rest", s.obstacles.size()), "obstacles");
   part(s.coupling.has_value(), "solid program", "solid program");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 /// Moments and equilibrium of one cell on any lattice at run time, for passes over cells and links.
-/// The sweep has the same equations on packs in `equilibrium.h`.
+/// The sweep has the same equations on packs in `collision/equilibrium.h`.
 #pragma once
 
 #include "lbm_solver/field/esoteric_pull.h"

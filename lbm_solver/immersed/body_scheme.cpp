@@ -8,23 +8,52 @@
 
 namespace lbm {
 
-std::unique_ptr<BodyScheme> make_scheme(const std::string& name, const Domain& domain,
-                                        const Lattice& lattice, double spring_stiffness) {
-  if (name == "bounce_back")
-    return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::HalfWay);
-  if (name == "interpolated_bounce_back")
-    return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::Interpolated);
-  if (name == "implicit_immersed_boundary") return std::make_unique<ImplicitMarkers>(domain);
-  if (name == "spring_immersed_boundary")
-    return std::make_unique<SpringMarkers>(domain, spring_stiffness);
+std::vector<SolidScheme> known_schemes() {
+  return {SolidScheme::ImmersedMovingBoundary, SolidScheme::BounceBack,
+          SolidScheme::InterpolatedBounceBack, SolidScheme::ImplicitImmersedBoundary,
+          SolidScheme::SpringImmersedBoundary};
+}
+
+std::string name_of(SolidScheme scheme) {
+  switch (scheme) {
+    case SolidScheme::ImmersedMovingBoundary:
+      return "immersed_moving_boundary";
+    case SolidScheme::BounceBack:
+      return "bounce_back";
+    case SolidScheme::InterpolatedBounceBack:
+      return "interpolated_bounce_back";
+    case SolidScheme::ImplicitImmersedBoundary:
+      return "implicit_immersed_boundary";
+    case SolidScheme::SpringImmersedBoundary:
+      return "spring_immersed_boundary";
+  }
+  return "";
+}
+
+SolidScheme solid_scheme(const std::string& name) {
   std::string known;
-  for (const std::string& n : known_schemes()) known += " " + n;
+  for (const SolidScheme scheme : known_schemes()) {
+    if (name_of(scheme) == name) return scheme;
+    known += " " + name_of(scheme);
+  }
   throw std::invalid_argument("no scheme '" + name + "'; known:" + known);
 }
 
-std::vector<std::string> known_schemes() {
-  return {"immersed_moving_boundary", "bounce_back", "interpolated_bounce_back",
-          "implicit_immersed_boundary", "spring_immersed_boundary"};
+std::unique_ptr<BodyScheme> make_scheme(SolidScheme scheme, const Domain& domain,
+                                        const Lattice& lattice, double spring_stiffness) {
+  switch (scheme) {
+    case SolidScheme::BounceBack:
+      return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::HalfWay);
+    case SolidScheme::InterpolatedBounceBack:
+      return std::make_unique<LinkedBodies>(domain, lattice, WallPlace::Interpolated);
+    case SolidScheme::ImplicitImmersedBoundary:
+      return std::make_unique<ImplicitMarkers>(domain);
+    case SolidScheme::SpringImmersedBoundary:
+      return std::make_unique<SpringMarkers>(domain, spring_stiffness);
+    case SolidScheme::ImmersedMovingBoundary:
+      break;
+  }
+  throw std::invalid_argument("scheme '" + name_of(scheme) + "' is part of the sweep");
 }
 
 }  // namespace lbm

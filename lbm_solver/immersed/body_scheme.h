@@ -41,13 +41,25 @@ class BodyScheme {
   Vec3 body_force_ = Vec3::Zero();  // rho u = Σ c f + F/2
 };
 
-/// @param name              one of known_schemes() without the first; in three dimensions links
-/// only
-/// @param spring_stiffness  of the spring scheme, force a surface element and stretch
+/// How solids act on the fluid.
+enum class SolidScheme {
+  ImmersedMovingBoundary,  ///< covered cells of the sweep; the others are each a BodyScheme
+  BounceBack,
+  InterpolatedBounceBack,
+  ImplicitImmersedBoundary,
+  SpringImmersedBoundary,
+};
+/// All of them, in the order of the enumeration.
+std::vector<SolidScheme> known_schemes();
+/// As a scene and a report write it, e.g. "immersed_moving_boundary".
+std::string name_of(SolidScheme scheme);
 /// @throws std::invalid_argument naming the known ones
-std::unique_ptr<BodyScheme> make_scheme(const std::string& name, const Domain& domain,
+SolidScheme solid_scheme(const std::string& name);
+
+/// @param scheme            not the immersed moving boundary; in three dimensions links only
+/// @param spring_stiffness  of the spring scheme, force a surface element and stretch
+/// @throws std::invalid_argument where a scheme is no pass of its own
+std::unique_ptr<BodyScheme> make_scheme(SolidScheme scheme, const Domain& domain,
                                         const Lattice& lattice, double spring_stiffness = 0.001);
-/// "immersed_moving_boundary" and the passes.
-std::vector<std::string> known_schemes();
 
 }  // namespace lbm

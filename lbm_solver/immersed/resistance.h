@@ -100,10 +100,10 @@ class ResistanceCollision {
     using V = Pack;
     const Moments<L, V> m = moments<L>(f);
     const V rho = m.drho + V(1.0);
-    V tau(tau_);
-    if constexpr (Collision::turbulent) tau = collide.relaxation_time(f, m);
-    const auto kind = LaneChoice::which(cell.cover + V(1.0 - kWhole));
     const V eps = fraction_of(cell.cover);
+    V tau(tau_);
+    if constexpr (Collision::local_viscosity) tau = collide.relaxation_time(f, m, V(1.0) - eps);
+    const auto kind = LaneChoice::which(cell.cover + V(1.0 - kWhole));
     const auto whole = eps >= V(kWhole);
     OddExchange<V> odd = surface_exchange<L, V>(eps, tau - V(0.5), V(mu_zero_));
     where(whole, odd.momentum) = momentum_(kind);

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "lbm_solver/base/simd.h"
+#include "lbm_solver/collision/equilibrium.h"
 #include "lbm_solver/collision/forcing.h"
+#include "lbm_solver/collision/moments.h"
 #include "lbm_solver/immersed/cover_block.h"
 #include "lbm_solver/immersed/weight.h"
 
@@ -119,8 +121,9 @@ class CoveredCollision {
     const Moments<L, V> m = moments<L>(f);
     const Vector<L, V> u = velocity<L>(m, NoForce<L>({}));
     V tau(weight_.tau);
-    if constexpr (Collision::turbulent) tau = collide.relaxation_time(f, m);
-    const V weight = weight_(fraction_of(cell.cover), tau);
+    const V eps = fraction_of(cell.cover);
+    if constexpr (Collision::local_viscosity) tau = collide.relaxation_time(f, m, V(1.0) - eps);
+    const V weight = weight_(eps, tau);
     const auto kind = LaneChoice::which(cell.cover + V(1.0 - kWhole));
     const auto of = [&](const Factor& factor) __attribute__((always_inline)) {
       return V(factor.fluid) + weight * factor.solid_less_fluid(kind);

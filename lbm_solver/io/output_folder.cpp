@@ -20,7 +20,8 @@ constexpr const char* kMark = ".bplbm";
 constexpr std::array kResults{
     "summary.json", "probes.csv",    "points.csv",           "obstacles.csv", "fields.h5",
     "fields.xdmf",  "checkpoint.h5", "checkpoint.before.h5", "fault.h5",      "fields-cut-off.h5"};
-constexpr std::array kOthers{"lbm.log", "liggghts.log", "lammps.log", "breaks.csv", "plot.log"};
+constexpr std::array kOthers{"lbm.log",  "liggghts.log", "lammps.log",  "breaks.csv",
+                             "plot.log", "view.py",      "averages.h5", "averages.xdmf"};
 
 bool is_marked(const fs::path& folder) {
   return fs::is_regular_file(folder / kMark);
@@ -51,7 +52,7 @@ bool is_part(const std::string& name) {
   const bool state = name.starts_with("checkpoint.") || name.starts_with("fault.");
   return (state && name.ends_with(".solid")) ||
          (name.ends_with(".part") && (state || name.starts_with("summary.json"))) ||
-         name.ends_with(".csv.part") ||
+         name.ends_with(".csv.part") || (name.starts_with("sensor-") && name.ends_with(".csv")) ||
          (name.starts_with("fields-cut-off") && name.ends_with(".h5"));
 }
 

@@ -34,7 +34,7 @@ CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double
     throw protocol::ProgramError(path + " cannot be written; is the disk full?");
 }
 
-void CsvWriter::row(std::initializer_list<double> values) {
+void CsvWriter::row(std::span<const double> values) {
   const char* separator = "";
   for (const double v : values) {
     fmt::print(file_.get(), "{}", separator);

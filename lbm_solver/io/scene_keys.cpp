@@ -25,6 +25,9 @@ run.end_time = 1
 coupling.buoyancy = "fluid"
 boundary = [{side = "left", kind = "velocity", velocity = [0, 0]}, {side = "right", kind = "pressure"}]
 obstacle = [{centre = [0, 0], diameter = 1}, {from = [0, 0], to = [1, 1]}]
+sensor = [{name = "a", kind = "plane", axis = "x", at = 0, from = [0, 0], to = [1, 1]},
+          {name = "b", kind = "line", from = [0, 0], to = [1, 1]}, {name = "c", kind = "side", side = "left"}]
+average.from = 0
 )",
     R"(
 box.size = [1, 1, 1]
@@ -93,6 +96,9 @@ constexpr Meaning kMeanings[] = {
     {"coupling.substeps", "Solid steps a coupling interval.", "by rule (collision.md)"},
     {"coupling.inner_inertia", "Corrects loads for the inertia of the fluid inside a particle."},
     {"coupling.buoyancy", "Which program adds the buoyancy."},
+    {"coupling.carry_weight",
+     "In a box that is periodic along gravity a body force on the fluid carries the weight of all "
+     "particles, so that the mixture as a whole does not fall."},
     {"coupling.virtual_mass",
      "Virtual mass of a particle over the mass of the fluid that it covers (loads.md).",
      "1 for particles lighter than the fluid, else 0"},
@@ -139,6 +145,21 @@ constexpr Meaning kMeanings[] = {
     {"output.probe_every",
      "How often probes, points and loads of obstacles are written; 0: every interval."},
     {"output.points", "Places whose pressure and velocity are written."},
+    {"output.probe_particles", "Ids of the particles that have rows in probes.csv.", "all"},
+    {"average.from",
+     "Means and root mean squares over time of velocity and pressure are taken from then on."},
+    {"average.every", "Time from one sample to the next; 0: every coupling interval."},
+    {"sensor.name", "Name of the sensor; its table is sensor-NAME.csv.", "required"},
+    {"sensor.kind", "What it looks at (scene.md, Sensors).", "required"},
+    {"sensor.every", "Time from one row to the next; 0: every coupling interval."},
+    {"sensor.axis", "Axis across a plane.", "required of a plane"},
+    {"sensor.at", "Place of a plane on its axis; the nearest between two layers of cells is taken.",
+     "required of a plane", "the box"},
+    {"sensor.from", "Corner of the part of a plane that counts, or one end of a line.",
+     "whole plane"},
+    {"sensor.to", "The opposite corner, or the other end.", "whole plane"},
+    {"sensor.count", "Places along a line."},
+    {"sensor.side", "Side of the box.", "required of a side"},
 };
 
 const KeyNote* note_of(const KeyNotes& keys, std::string_view key) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -125,8 +126,10 @@ std::map<std::string, std::string> read_variables(TableReader t) {
       t.fail(name, "is a name that the programs give a value of their own",
              "choose another name; lbm check --liggghts-vars lists those that are taken");
     if (const auto problem = why_no_variable(name, value); !problem.empty())
-      t.fail(name, "= \"" + value + "\" " + problem,
-             "a script variable is a word of letters, digits and _, and a number or a text");
+      t.fail(
+          name, "= \"" + value + "\" " + problem,
+          "a script variable is a word of letters, digits and _, its value a number or one word of "
+          "these and . , : / + - * =");
   }
   return variables;
 }
@@ -153,6 +156,7 @@ CouplingScene read_coupling(TableReader t) {
                : by == "solid" ? protocol::Buoyancy::BySolid
                                : protocol::Buoyancy::None;
   c.virtual_mass = t.optional_number("virtual_mass", {0.0, 100.0}, "");
+  c.carry_weight = t.flag_or("carry_weight", false);
   c.lubrication_range = t.number_or("lubrication_range", 0.0, {0.0, 10.0}, "cells");
   c.overlapped = t.choice_or("schedule", "serial", {"serial", "overlapped"}) == "overlapped";
   c.timeout = t.number_or("timeout", c.timeout, Bounds::positive(), "s");
@@ -290,6 +294,70 @@ InitialScene read_initial(TableReader t, int d) {
   return i;
 }
 
+std::string sensor_name(TableReader& t) {
+  const std::string name = t.text_or("name", "");
+  const bool plain = !name.empty() && name.size() <= 60 &&
+                     std::all_of(name.begin(), name.end(), [](unsigned char c) {
+                       return std::isalnum(c) || c == '_' || c == '-';
+                     });
+  if (!plain)
+    t.fail("name", name.empty() ? "is missing" : "= \"" + name + "\" cannot name a file",
+           "give letters, digits, _ and -: its table is sensor-NAME.csv");
+  return name;
+}
+
+/// A sensor's line, plane or side.
+SensorScene read_sensor(TableReader t, const BoxScene& box) {
+  using Kind = SensorScene::Kind;
+  SensorScene s;
+  const int d = box.dimension;
+  s.name = sensor_name(t);
+  const std::string kind = t.choice_or("kind", "", {"line", "plane", "side"});
+  s.kind = kind == "line" ? Kind::Line : kind == "side" ? Kind::Side : Kind::Plane;
+  s.every = t.number_or("every", 0.0, Bounds::non_negative(), "s");
+  s.from = box.origin;
+  s.to = box.origin + box.size;
+  if (s.kind == Kind::Line) {
+    s.from = t.vector("from", d, "[m]");
+    s.to = t.vector("to", d, "[m]");
+    s.count = t.optional_integer("count", 2).value_or(20);
+  } else if (s.kind == Kind::Plane) {
+    std::vector<std::string> axes{"x", "y", "z"};
+    axes.resize(d);
+    s.axis = t.choice_or("axis", "", axes)[0] - 'x';
+    s.at = t.number("at", {box.origin[s.axis], box.origin[s.axis] + box.size[s.axis]}, "m");
+    if (t.has("from")) s.from = t.vector("from", d, "[m]");
+    if (t.has("to")) s.to = t.vector("to", d, "[m]");
+  } else {
+    std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
+    sides.resize(2 * d);
+    const std::string side = t.choice_or("side", "", sides);
+    s.side = static_cast<SideName>(std::find(sides.begin(), sides.end(), side) - sides.begin());
+  }
+  t.finish();
+  return s;
+}
+
+/// Numbers of particles. What is no whole number is refused.
+std::vector<std::int64_t> read_probe_particles(TableReader& t) {
+  std::vector<std::int64_t> ids;
+  for (const double id : t.numbers_or("probe_particles", {}, {1.0, 9e15}, "")) {
+    if (id != std::floor(id))
+      t.fail("probe_particles", fmt::format("holds {}, which is no particle's number", id),
+             "give ids, as [1, 5]");
+    ids.push_back(static_cast<std::int64_t>(id));
+  }
+  return ids;
+}
+
+AverageScene read_average(TableReader t) {
+  AverageScene a;
+  a.from = t.number_or("from", 0.0, Bounds::non_negative(), "s");
+  a.every = t.number_or("every", 0.0, Bounds::non_negative(), "s");
+  t.finish();
+  return a;
+}
+
 Scene read_tables(const toml::table& merged, const std::vector<std::string>& files,
                   KeyNotes* keys) {
   Scene scene;
@@ -319,7 +387,11 @@ Scene read_tables(const toml::table& merged, const std::vector<std::string>& fil
   scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
   scene.output.probe_every = output.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
   scene.output.points = output.vectors_or_none("points", d, "[m]");
+  scene.output.probe_particles = read_probe_particles(output);
   output.finish();
+  if (root.has("average")) scene.output.average = read_average(root.table("average"));
+  for (const TableReader& t : root.tables("sensor"))
+    scene.output.sensors.push_back(read_sensor(t, scene.box));
   root.finish();
   return scene;
 }

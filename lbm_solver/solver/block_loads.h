@@ -29,22 +29,26 @@ struct CellBox {
 ///   F = Σ 2 c_q (f_q - w_q)
 /// over the links from cells outside of walls, and T = Σ r × 2 c_q (f_q - w_q) with r from the
 /// block's centre to the middle of the link. The rest density presses on no side (the pressure of a
-/// load is against the reference). Where blocks touch, nothing passes between them.
+/// load is against the reference). Where blocks touch, nothing passes between them. The places of
+/// the populations are found once: the loads of a step cost a few nanoseconds a link.
 class BlockLoads {
  public:
-  BlockLoads(const Fluid& fluid, const std::vector<CellBox>& blocks);
+  /// @param fluid  outlives this, and stays where it is
+  BlockLoads(Fluid& fluid, const std::vector<CellBox>& blocks);
 
   /// On each block by the populations that arrive in the coming step: this rank's cells' part,
   /// lattice units.
-  std::vector<BodyLoad> loads(const Fluid& fluid) const;
+  std::vector<BodyLoad> loads() const;
 
  private:
-  struct Arrival {
-    Cell3 cell;  ///< of this rank
-    int q;
-    Vec3 arm;  ///< to the middle of the link
+  /// What arrives along one direction at one block.
+  struct Arrivals {
+    Vec3 c;
+    std::vector<Population> in_even, in_odd;  ///< of a step: where it lies
+    std::vector<Vec3> arms;                   ///< to the middle of each link
   };
-  std::vector<std::vector<Arrival>> arrivals_;  // [block]
+  const Fluid& fluid_;
+  std::vector<std::vector<Arrivals>> arrivals_;  // [block][direction - 1]
 };
 
 }  // namespace lbm

@@ -123,7 +123,7 @@ ExpectedError of_central_moments(double tau, double diameter) {
 
 /// Whether the tables of arrays, which were made with TRT and each term's own Λ, hold.
 bool tabulated(const KernelChoice& k) {
-  return k.collision == "trt" && k.turbulence == "none" &&
+  return k.collision == CollisionOperator::Trt && !k.local_viscosity() &&
          k.parameters.magic == (by_resistance(k.solid_term) ? kResistanceMagic : 3.0 / 16.0);
 }
 
@@ -131,7 +131,7 @@ bool tabulated(const KernelChoice& k) {
 
 std::optional<ExpectedError> expected_error(const KernelChoice& kernel, int dimension,
                                             double fraction, double diameter) {
-  if (dimension == 2 && kernel.collision == "central_moment" &&
+  if (dimension == 2 && kernel.collision == CollisionOperator::CentralMoment &&
       kernel.solid_term == "layered_noble_torczynski")
     return of_central_moments(kernel.parameters.tau, diameter);
   const std::span<const Row> rows = rows_of(kernel.solid_term, dimension);

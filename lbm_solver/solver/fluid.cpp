@@ -27,7 +27,7 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
                  ? nullptr
                  : std::make_unique<CoverMap>(
                        domain(), cells(), radius_shift(choice.solid_term, domain().dimension()))),
-      medium_{choice.parameters, choice.turbulence != "none", cover_.get(),
+      medium_{choice.parameters, choice.local_viscosity(), cover_.get(),
               SolidShare(choice.solid_term, choice.weight, choice.parameters)},
       two_steps_(load_lag(choice.solid_term, choice.parameters.tau)) {
   if (!choice.force) {
@@ -52,6 +52,15 @@ Vec3 Fluid::body_force() const {
 
 void Fluid::ramp_body_force(const InTime& in_time) {
   force_in_time_ = in_time;
+  set_body_force();
+}
+
+void Fluid::set_body_force(const Vec3& force) {
+  BPLBM_EXPECT(choice_.force);
+  CollisionParameters& p = choice_.parameters;
+  p.force_x = force.x();
+  p.force_y = force.y();
+  p.force_z = force.z();
   set_body_force();
 }
 
@@ -84,6 +93,7 @@ void Fluid::remember_loads() {
 }
 
 std::vector<BodyLoad> Fluid::loads() const {
+  if (bodies_.empty()) return {};
   if (!two_steps_.on() || scheme_) return momentary_loads();
   return two_steps_.mean(bodies_, cover_->loads(), domain(), cells());
 }
@@ -146,28 +156,36 @@ void Fluid::sweep_and_exchange(EsotericPull& stream) {
 #pragma omp barrier
 }
 
-void Fluid::advance(std::int64_t steps) {
-  if (!two_steps_.on() || bodies_.empty()) return make_steps(steps);
+void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
+  if (bodies_.empty()) return make_steps(steps, after_each);
+  if (after_each) {  // all threads sum the loads of bodies, between two regions
+    for (; steps > 0; --steps) {
+      advance(1);
+      after_each();
+    }
+    return;
+  }
+  if (!two_steps_.on()) return make_steps(steps, {});
   remember_loads();
   if (steps > 1) {  // the load of a step needs that of the step before
-    make_steps(steps - 1);
+    make_steps(steps - 1, {});
     loads_are_new_ = true;
     remember_loads();
   }
-  make_steps(1);
+  make_steps(1, {});
   loads_are_new_ = true;
 }
 
-void Fluid::make_steps(std::int64_t steps) {
+void Fluid::make_steps(std::int64_t steps, const AfterStep& after_each) {
   for (; steps > 0 && static_cast<double>(steps_) < force_in_time_.ramp_steps; --steps) {
-    make_steps_under_force(1);
+    make_steps_under_force(1, after_each);
     set_body_force();
   }
-  if (steps > 0) make_steps_under_force(steps);
+  if (steps > 0) make_steps_under_force(steps, after_each);
 }
 
-void Fluid::make_steps_under_force(std::int64_t steps) {
-  const bool passes = scheme_ || !patches_.empty();
+void Fluid::make_steps_under_force(std::int64_t steps, const AfterStep& after_each) {
+  const bool passes = scheme_ || !patches_.empty() || after_each;
   std::function<double(const Cell3&)> solids;
   if (cover_) solids = [this](const Cell3& c) { return cover_->solid_fraction(c[0], c[1], c[2]); };
 #pragma omp parallel
@@ -193,10 +211,14 @@ void Fluid::make_steps_under_force(std::int64_t steps) {
       {
         if (scheme_) scheme_->after_sweep(f_, stream);
         for (const auto& patch : patches_) patch->apply({f_, stream, steps_ + s, solids});
+        if (after_each) {
+          stream_.set_odd(stream.odd());
+          after_each();
+        }
       }
     }
   }
-  if (steps % 2 != 0) stream_.advance();
+  if (!after_each && steps % 2 != 0) stream_.advance();
   steps_ += steps;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -62,6 +63,8 @@ class Fluid {
   }
   /// The body force of the kernel's choice comes up as `in_time` says.
   void ramp_body_force(const InTime& in_time);
+  /// Another one from the coming step on. The kernel's choice must have one.
+  void set_body_force(const Vec3& force);
   /// On a cell in the coming step.
   Vec3 body_force() const;
   /// To be called after the last wall was added.
@@ -71,10 +74,14 @@ class Fluid {
   /// Places the solids for the next step. Needs a scheme, or a solid term in the kernel's choice.
   void place(std::span<const Body> bodies);
 
-  /// Advances by one time step, or by some, in one parallel region, between which nothing is placed
-  /// or asked for. Collective.
+  /// Called after a step, by one thread while the others wait: it may ask for loads and
+  /// populations; it must place nothing, call nothing that is collective, and throw nothing.
+  using AfterStep = std::function<void()>;
+
+  /// Advances by one time step, or by some, between which nothing is placed, or asked for but by
+  /// `after_each`: in one parallel region, but for bodies whose loads are asked for. Collective.
   void step() { advance(1); }
-  void advance(std::int64_t steps);
+  void advance(std::int64_t steps, const AfterStep& after_each = {});
   std::int64_t steps() const { return steps_; }
 
   /// Loads on the placed bodies over the last step, in their order: this rank's cells' part. By
@@ -103,6 +110,14 @@ class Fluid {
   /// Population f_q - w_q that has arrived at a cell, for tests and cell passes.
   Population arriving(int q, int x, int y, int z = 0) { return stream_.arriving(f_, q, x, y, z); }
   double arriving(int q, int x, int y, int z = 0) const { return stream_.arriving(f_, q, x, y, z); }
+  /// The coming step is an odd one; a population lies at one place in all of these, at another in
+  /// the even ones.
+  bool odd() const { return stream_.odd(); }
+  Population arriving_in(bool odd, int q, int x, int y, int z = 0) {
+    EsotericPull stream = stream_;
+    stream.set_odd(odd);
+    return stream.arriving(f_, q, x, y, z);
+  }
 
   struct Extremes {
     double max_speed = 0.0;    ///< of cells with fluid, as a row shows it
@@ -132,8 +147,8 @@ class Fluid {
 
  private:
   void sweep_and_exchange(EsotericPull& stream);
-  void make_steps(std::int64_t steps);
-  void make_steps_under_force(std::int64_t steps);
+  void make_steps(std::int64_t steps, const AfterStep& after_each);
+  void make_steps_under_force(std::int64_t steps, const AfterStep& after_each);
   void set_body_force();
   void remember_loads();
   Record save_boundary(std::size_t number) const;

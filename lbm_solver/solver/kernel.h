@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lbm_solver/collision/collision_operator.h"
 #include "lbm_solver/collision/parameters.h"
 #include "lbm_solver/field/esoteric_pull.h"
 #include "lbm_solver/immersed/cover_map.h"
@@ -36,19 +37,21 @@ class Kernel {
 
 /// What a scene asks of the kernel; a row of the kernel table.
 struct KernelChoice {
-  std::string collision = "trt";    ///< one of known_collisions()
-  std::string turbulence = "none";  ///< "none" or "smagorinsky"
+  CollisionOperator collision = CollisionOperator::Trt;
   bool force = false;               ///< uniform body force
   std::string solid_term = "none";  ///< "none" or one of known_solid_terms()
   CollisionParameters parameters;
   WeightRule weight = WeightRule::Viscous;
   std::string lattice = "D2Q9";  ///< one of known_lattices()
   Precision precision = Precision::Double;
+
+  /// The viscosity depends on the shear rate of a cell: by its table, or by Smagorinsky's model.
+  bool local_viscosity() const {
+    return parameters.smagorinsky > 0.0 || parameters.viscosity_table;
+  }
 };
 
 /// @throws std::invalid_argument naming the rows, or the solid terms, that exist
 std::unique_ptr<Kernel> make_kernel(const KernelChoice& choice);
-
-std::vector<std::string> known_collisions();
 
 }  // namespace lbm

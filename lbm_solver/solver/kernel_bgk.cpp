@@ -4,11 +4,11 @@
 
 namespace lbm {
 
-template <class L, class Turbulence, class Force>
-using Bgk = TwoRates<L, EqualRates, Turbulence, Force>;
+template <class L, class Viscosity, class Force>
+using Bgk = TwoRates<L, EqualRates, Viscosity, Force>;
 
 KernelRows bgk_rows() {
-  return rows_of<Bgk>("bgk");
+  return rows_of<Bgk>(CollisionOperator::Bgk);
 }
 
 }  // namespace lbm

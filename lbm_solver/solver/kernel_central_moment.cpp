@@ -5,7 +5,7 @@
 namespace lbm {
 
 KernelRows central_moment_rows() {
-  return rows_of<CentralMoments>("central_moment");
+  return rows_of<CentralMoments>(CollisionOperator::CentralMoment);
 }
 
 }  // namespace lbm

@@ -7,11 +7,11 @@ namespace lbm {
 /// In double precision only: it is the slowest to compile, and central moments serve the same
 /// flows.
 KernelRows recursive_regularised_rows() {
-  const char* name = "recursive_regularised";
+  constexpr CollisionOperator collision = CollisionOperator::RecursiveRegularised;
   KernelRows rows;
-  add_lattice<RecursiveRegularised, D2Q9, double>(rows, name);
-  add_lattice<RecursiveRegularised, D3Q19, double>(rows, name);
-  add_lattice<RecursiveRegularised, D3Q27, double>(rows, name);
+  add_lattice<RecursiveRegularised, D2Q9, double>(rows, collision);
+  add_lattice<RecursiveRegularised, D3Q19, double>(rows, collision);
+  add_lattice<RecursiveRegularised, D3Q27, double>(rows, collision);
   return rows;
 }
 

@@ -4,13 +4,16 @@
 
 #include "lbm_solver/collision/forcing.h"
 #include "lbm_solver/solver/row_kernel.h"
+#include "lbm_solver/viscosity/constant_viscosity.h"
+#include "lbm_solver/viscosity/local_viscosity.h"
 
 namespace lbm {
 
 struct KernelTableRow {
-  std::string collision, lattice, turbulence;
+  CollisionOperator collision;
+  std::string lattice;
   Precision precision;
-  bool force;
+  bool local_viscosity, force;
   std::unique_ptr<Kernel> (*make)(const KernelChoice&);
 };
 using KernelRows = std::vector<KernelTableRow>;
@@ -26,34 +29,35 @@ std::unique_ptr<Kernel> make_row_kernel(const KernelChoice& c) {
   return std::make_unique<RowKernel<Collision, Real>>(c);
 }
 
-/// The row of one operator with one turbulence model and force.
 template <class Collision, class Real>
-void add_row(KernelRows& rows, const char* name, const char* turbulence, bool force) {
-  constexpr Precision precision =
-      std::is_same_v<Real, double> ? Precision::Double : Precision::Single;
-  rows.push_back(
-      {name, Collision::Set::name, turbulence, precision, force, make_row_kernel<Collision, Real>});
+void add_row(KernelRows& rows, CollisionOperator collision) {
+  rows.push_back({.collision = collision,
+                  .lattice = Collision::Set::name,
+                  .precision = std::is_same_v<Real, double> ? Precision::Double : Precision::Single,
+                  .local_viscosity = Collision::local_viscosity,
+                  .force = Collision::forced,
+                  .make = make_row_kernel<Collision, Real>});
 }
 
-/// All rows of one lattice and precision.
+/// All rows of one lattice and precision: every law of viscosity that is not constant shares one.
 template <template <class, class, class> class Collision, class L, class Real>
-void add_lattice(KernelRows& rows, const char* name) {
-  add_row<Collision<L, Laminar, NoForce<L>>, Real>(rows, name, "none", false);
-  add_row<Collision<L, Laminar, GuoForce<L>>, Real>(rows, name, "none", true);
-  add_row<Collision<L, Smagorinsky, NoForce<L>>, Real>(rows, name, "smagorinsky", false);
-  add_row<Collision<L, Smagorinsky, GuoForce<L>>, Real>(rows, name, "smagorinsky", true);
+void add_lattice(KernelRows& rows, CollisionOperator collision) {
+  add_row<Collision<L, ConstantViscosity, NoForce<L>>, Real>(rows, collision);
+  add_row<Collision<L, ConstantViscosity, GuoForce<L>>, Real>(rows, collision);
+  add_row<Collision<L, LocalViscosity, NoForce<L>>, Real>(rows, collision);
+  add_row<Collision<L, LocalViscosity, GuoForce<L>>, Real>(rows, collision);
 }
 
-/// All rows of an operator that is a template on lattice, turbulence model and force.
+/// All rows of an operator that is a template on lattice, viscosity and force.
 template <template <class, class, class> class Collision>
-KernelRows rows_of(const char* name) {
+KernelRows rows_of(CollisionOperator collision) {
   KernelRows rows;
-  add_lattice<Collision, D2Q9, double>(rows, name);
-  add_lattice<Collision, D2Q9, float>(rows, name);
-  add_lattice<Collision, D3Q19, double>(rows, name);
-  add_lattice<Collision, D3Q19, float>(rows, name);
-  add_lattice<Collision, D3Q27, double>(rows, name);
-  add_lattice<Collision, D3Q27, float>(rows, name);
+  add_lattice<Collision, D2Q9, double>(rows, collision);
+  add_lattice<Collision, D2Q9, float>(rows, collision);
+  add_lattice<Collision, D3Q19, double>(rows, collision);
+  add_lattice<Collision, D3Q19, float>(rows, collision);
+  add_lattice<Collision, D3Q27, double>(rows, collision);
+  add_lattice<Collision, D3Q27, float>(rows, collision);
   return rows;
 }
 

@@ -19,27 +19,32 @@ const KernelRows& table() {
   return all;
 }
 
+bool same(const KernelTableRow& a, const KernelTableRow& b) {
+  return a.collision == b.collision && a.lattice == b.lattice && a.precision == b.precision &&
+         a.local_viscosity == b.local_viscosity && a.force == b.force;
+}
+
 std::string text(const KernelTableRow& r) {
   return fmt::format("{} {} {} + {} + {}", r.lattice,
-                     r.precision == Precision::Double ? "double" : "single", r.collision,
-                     r.turbulence == "none" ? "laminar" : r.turbulence,
+                     r.precision == Precision::Double ? "double" : "single", name_of(r.collision),
+                     r.local_viscosity ? "local viscosity" : "constant viscosity",
                      r.force ? "force" : "no force");
 }
 
 }  // namespace
 
 std::unique_ptr<Kernel> make_kernel(const KernelChoice& c) {
-  const KernelTableRow wanted{c.collision, c.lattice, c.turbulence, c.precision, c.force, nullptr};
+  const KernelTableRow wanted{.collision = c.collision,
+                              .lattice = c.lattice,
+                              .precision = c.precision,
+                              .local_viscosity = c.local_viscosity(),
+                              .force = c.force,
+                              .make = nullptr};
+  for (const KernelTableRow& row : table())
+    if (same(row, wanted)) return row.make(c);
   std::string known;
-  for (const KernelTableRow& row : table()) {
-    if (text(row) == text(wanted)) return row.make(c);
-    known += "\n  " + text(row);
-  }
+  for (const KernelTableRow& row : table()) known += "\n  " + text(row);
   throw std::invalid_argument(fmt::format("no kernel for {}; known:{}", text(wanted), known));
-}
-
-std::vector<std::string> known_collisions() {
-  return {"bgk", "trt", "central_moment", "recursive_regularised"};
 }
 
 }  // namespace lbm

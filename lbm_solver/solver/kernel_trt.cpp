@@ -4,11 +4,11 @@
 
 namespace lbm {
 
-template <class L, class Turbulence, class Force>
-using Trt = TwoRates<L, MagicRate, Turbulence, Force>;
+template <class L, class Viscosity, class Force>
+using Trt = TwoRates<L, MagicRate, Viscosity, Force>;
 
 KernelRows trt_rows() {
-  return rows_of<Trt>("trt");
+  return rows_of<Trt>(CollisionOperator::Trt);
 }
 
 }  // namespace lbm

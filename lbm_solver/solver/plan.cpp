@@ -120,18 +120,19 @@ void judge_step(const Scene& s, Plan& plan) {
     plan.warnings.push_back(fmt::format(
         "velocity_scale/C = {:.3g} exceeds {}: compressibility error", plan.u_over_c, kWarnSpeed));
   const bool has_solids = s.coupling || !s.obstacles.empty();
-  const bool fixed_magic = plan.kernel.collision == "trt" || plan.kernel.collision == "bgk";
+  const bool fixed_magic = plan.kernel.collision == CollisionOperator::Trt ||
+                           plan.kernel.collision == CollisionOperator::Bgk;
   if (plan.reynolds_cell > kLimitReynoldsCell && fixed_magic && has_solids)
     plan.warnings.push_back(
         fmt::format("Re_h = {:.3g} exceeds {}: forces are noisy with {}; take collision = \"auto\" "
                     "or a finer cell",
-                    plan.reynolds_cell, kLimitReynoldsCell, plan.kernel.collision));
+                    plan.reynolds_cell, kLimitReynoldsCell, name_of(plan.kernel.collision)));
   if (s.coupling && s.particles->density.lo < 0.9 * s.fluid.density &&
       plan.reynolds_cell > kLimitReynoldsCell)
     plan.warnings.push_back(
         "particles lighter than the fluid were proven stable up to Re_h = 5 only; watch their "
         "forces");
-  if (plan.kernel.collision == "trt" && plan.kernel.turbulence != "none")
+  if (plan.kernel.collision == CollisionOperator::Trt && plan.kernel.parameters.smagorinsky > 0.0)
     plan.warnings.push_back(
         "TRT with a turbulence model: its slow odd rate adds to the eddy viscosity where u ∇u is "
         "large; "
@@ -150,12 +151,13 @@ void choose_solids(const Scene& s, Plan& plan) {
   const bool spinning = std::any_of(s.obstacles.begin(), s.obstacles.end(),
                                     [](const ObstacleScene& o) { return !o.spin.isZero(0.0); });
   if (!s.coupling && s.obstacles.empty()) return;
-  if (n.scheme != "auto" && n.scheme != plan.scheme) {
+  if (n.scheme != "auto" && n.scheme != name_of(plan.scheme)) {
     if (n.solid_term != "auto")
       throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
                        "leave it out, or take scheme = \"immersed_moving_boundary\"");
-    plan.scheme = n.scheme;
-    const bool links = n.scheme == "bounce_back" || n.scheme == "interpolated_bounce_back";
+    plan.scheme = solid_scheme(n.scheme);
+    const bool links = plan.scheme == SolidScheme::BounceBack ||
+                       plan.scheme == SolidScheme::InterpolatedBounceBack;
     if (s.box.dimension == 3 && !links)
       throw InputError(fmt::format("{}: numerics.scheme = \"{}\" is there in two dimensions only",
                                    s.file, n.scheme),
@@ -168,17 +170,17 @@ void choose_solids(const Scene& s, Plan& plan) {
              : balanced             ? WeightRule::Balanced
                                     : WeightRule::Viscous;
   k.solid_term = n.solid_term;
-  if (by_resistance(n.solid_term) && k.collision != "trt")
+  if (by_resistance(n.solid_term) && k.collision != CollisionOperator::Trt)
     throw InputError(fmt::format("{}: numerics.solid_term = \"{}\" works with collision = \"trt\" "
                                  "only, which here is {}",
-                                 s.file, n.solid_term, k.collision),
+                                 s.file, n.solid_term, name_of(k.collision)),
                      "take collision = \"trt\", or solid_term = \"auto\"");
   if (n.solid_term != "auto") return;
   const auto take = [&](const char* term, const char* reason) {
     k.solid_term = term;
     plan.solid_reason = std::string("auto: ") + reason;
   };
-  if (k.collision != "trt")
+  if (k.collision != CollisionOperator::Trt)
     take("layered_noble_torczynski", "least noise where the fluid is under-resolved");
   else if (s.coupling || spinning)
     take("layered_resistance", "exact on planes at every τ, and calm in bodies that move");
@@ -234,7 +236,7 @@ void expect_error(const Scene& s, Plan& plan) {
   std::vector<double> fractions{fraction_known(s)};
   if (fractions[0] == 0.0) {  // the script brings the particles: a loose bed, and a dense one
     fractions[0] = kLooseBed[d - 2];
-    if (plan.kernel.collision == "trt")
+    if (plan.kernel.collision == CollisionOperator::Trt)
       fractions.push_back(std::min(kDenseBed[d - 2], kPackedBed[d - 2] * std::pow(ratio, d)));
   }
   ExpectedError worst;
@@ -243,7 +245,7 @@ void expect_error(const Scene& s, Plan& plan) {
     const auto error = expected_error(plan.kernel, d, fraction, cells);
     if (!error) {
       plan.expected_error = fmt::format("not tabulated for {} with {}: compare with a finer cell",
-                                        plan.kernel.collision, plan.kernel.solid_term);
+                                        name_of(plan.kernel.collision), plan.kernel.solid_term);
       return;
     }
     plan.expected_error +=
@@ -255,8 +257,9 @@ void expect_error(const Scene& s, Plan& plan) {
   plan.expected_error +=
       by_resistance(plan.kernel.solid_term)
           ? " [slow flow through regular arrays]"
-          : fmt::format(" [slow flow through regular arrays, τ = {:.3g}]",
-                        plan.kernel.collision == "trt" ? 1.0 : plan.kernel.parameters.tau);
+          : fmt::format(
+                " [slow flow through regular arrays, τ = {:.3g}]",
+                plan.kernel.collision == CollisionOperator::Trt ? 1.0 : plan.kernel.parameters.tau);
   if (worst.at_least || std::abs(worst.percent) > kLargeError)
     plan.warnings.push_back(
         fmt::format("with {:.3g} cells a diameter the drag is {} {:.0f} % off at a solid fraction "
@@ -270,9 +273,10 @@ void choose_kernel(const Scene& s, Plan& plan) {
   plan.reynolds_cell = s.fluid.velocity_scale * dx / s.fluid.viscosity;
   const bool calm = plan.reynolds_cell <= kLimitReynoldsCell, les = n.smagorinsky > 0.0;
   KernelChoice& k = plan.kernel;
-  k.collision = n.collision;
-  if (n.collision == "auto") {
-    k.collision = calm && !les ? "trt" : "central_moment";
+  if (n.collision != "auto") {
+    k.collision = collision_operator(n.collision);
+  } else {
+    k.collision = calm && !les ? CollisionOperator::Trt : CollisionOperator::CentralMoment;
     plan.collision_reason =
         les ? "auto: the slow odd rate of TRT would disturb the turbulence model"
             : fmt::format(
@@ -282,21 +286,20 @@ void choose_kernel(const Scene& s, Plan& plan) {
   }
   k.lattice = n.lattice != "auto" ? n.lattice : s.box.dimension == 2 ? "D2Q9" : "D3Q19";
   k.precision = n.single ? Precision::Single : Precision::Double;
-  if (n.single && k.collision == "recursive_regularised")
+  if (n.single && k.collision == CollisionOperator::RecursiveRegularised)
     throw InputError(
         s.file +
             ": numerics.collision = \"recursive_regularised\" is there in double precision only",
         "take central_moment, or precision = \"double\"");
-  k.turbulence = n.smagorinsky > 0.0 ? "smagorinsky" : "none";
-  k.force = s.fluid.body_force.norm() > 0.0;
+  k.force = s.fluid.body_force.norm() > 0.0 || (s.coupling && s.coupling->carry_weight);
   choose_solids(s, plan);
   const Vec3 force = s.fluid.body_force * (dt * dt / dx);
-  k.parameters = {0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),
-                  choose_magic(s, k),
-                  n.smagorinsky,
-                  force.x(),
-                  force.y(),
-                  force.z()};
+  k.parameters = {.tau = 0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),
+                  .magic = choose_magic(s, k),
+                  .smagorinsky = n.smagorinsky,
+                  .force_x = force.x(),
+                  .force_y = force.y(),
+                  .force_z = force.z()};
 }
 
 void choose_substeps(const Scene& s, Plan& plan) {

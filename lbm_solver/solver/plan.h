@@ -26,8 +26,8 @@ struct Plan {
   double u_over_c = 0.0;       ///< velocity scale / C, the papers' Mach number
   double reynolds = 0.0;       ///< with the smallest particle, a disc at rest, or the box's width
   double reynolds_cell = 0.0;  ///< Re_h = u dx / nu
-  double cells_per_diameter = 0.0;                  ///< smallest particle; 0 without particles
-  std::string scheme = "immersed_moving_boundary";  ///< of the solids; one of known_schemes()
+  double cells_per_diameter = 0.0;  ///< smallest particle; 0 without particles
+  SolidScheme scheme = SolidScheme::ImmersedMovingBoundary;
   std::string solid_reason;      ///< what auto took for solids and why; empty where given
   std::string collision_reason;  ///< why auto took what it took; empty where it was given
   std::string step_limit;        ///< what chose the fluid step

@@ -6,6 +6,8 @@
 
 #include "lbm_solver/base/simd.h"
 #include "lbm_solver/collision/forcing.h"
+#include "lbm_solver/collision/moments.h"
+#include "lbm_solver/viscosity/local_viscosity.h"
 
 namespace lbm {
 namespace {
@@ -15,7 +17,7 @@ template <class L, class Real>
 class MomentsOfRow {
  public:
   explicit MomentsOfRow(const RowMedium& medium)
-      : medium_(medium), force_(medium.parameters), eddies_(medium.parameters) {}
+      : medium_(medium), force_(medium.parameters), viscosity_(medium.parameters) {}
 
   void operator()(Populations& f, const EsotericPull& stream, int y, int z, std::span<double> rho,
                   const RowVelocity& u, std::span<double> solid) const {
@@ -43,7 +45,8 @@ class MomentsOfRow {
            Vector<L, Pack>& mean) const {
     const auto solid = medium_.cover->merge<L::D>(block);
     Pack tau(medium_.parameters.tau);
-    if (medium_.turbulent) tau = turbulent_tau<L>(g, m, eddies_, force_);
+    if (medium_.local_viscosity)
+      tau = local_tau<L>(g, m, Pack(1.0) - fraction_of(solid.cover), viscosity_, force_);
     Pack share = medium_.share.of<L>(solid.cover, tau);
     where(solid.cover == Pack(0.0), share) = Pack(0.0);
     for (int a = 0; a < L::D; ++a)  // what is not finite stays so: 0 times it is not 0
@@ -66,7 +69,7 @@ class MomentsOfRow {
 
   const RowMedium& medium_;
   GuoForce<L> force_;
-  Smagorinsky eddies_;
+  LocalViscosity viscosity_;
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ using RowVelocity = std::array<std::span<double>, 3>;
 /// What the moments of a row depend on beside the populations.
 struct RowMedium {
   CollisionParameters parameters;   ///< half of the body force belongs to the momentum
-  bool turbulent = false;           ///< the relaxation time has an eddy viscosity
+  bool local_viscosity = false;     ///< the relaxation time depends on the shear rate
   const CoverMap* cover = nullptr;  ///< covered cells; null: none
   SolidShare share;                 ///< of the solids in their velocity
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/boundary/patch.h"
@@ -115,14 +116,42 @@ void check_starts_in_obstacles(const Scene& s) {
             "move the particle or the obstacle");
 }
 
+void check_inside(const Scene& s, const Vec3& x, const std::string& what) {
+  for (int k = 0; k < s.box.dimension; ++k) {
+    const double lo = s.box.origin[k], hi = lo + s.box.size[k];
+    if (x[k] < lo || x[k] > hi)
+      throw InputError(s.file + ": " + what, place_text(s, x) + " lies outside the box",
+                       fmt::format("the box is {:.6g} … {:.6g} m in {}", lo, hi, "xyz"[k]));
+  }
+}
+
 void check_points(const Scene& s) {
-  for (const Vec3& x : s.output.points)
-    for (int k = 0; k < s.box.dimension; ++k) {
-      const double lo = s.box.origin[k], hi = lo + s.box.size[k];
-      if (x[k] < lo || x[k] > hi)
-        throw InputError(s.file + ": output.points", place_text(s, x) + " lies outside the box",
-                         fmt::format("the box is {:.6g} … {:.6g} m in {}", lo, hi, "xyz"[k]));
-    }
+  for (const Vec3& x : s.output.points) check_inside(s, x, "output.points");
+}
+
+void check_sensors(const Scene& s) {
+  std::set<std::string> names;
+  for (const SensorScene& sensor : s.output.sensors) {
+    const std::string what = fmt::format("sensor \"{}\"", sensor.name);
+    if (!names.insert(sensor.name).second)
+      throw InputError(s.file + ": " + what, "is the name of two sensors",
+                       "each has a table of its own: choose another name");
+    check_inside(s, sensor.from, what);
+    check_inside(s, sensor.to, what);
+    for (int k = 0; k < s.box.dimension; ++k)
+      if (sensor.kind == SensorScene::Kind::Plane && k != sensor.axis &&
+          !(sensor.from[k] < sensor.to[k]))
+        throw InputError(s.file + ": " + what,
+                         fmt::format("is empty: from {:.6g} to {:.6g} m in {}", sensor.from[k],
+                                     sensor.to[k], "xyz"[k]),
+                         "give the lower corner as from, the upper as to");
+  }
+  const auto& average = s.output.average;
+  if (average && average->from >= s.end_time)
+    throw InputError(
+        s.file + ": average.from",
+        fmt::format("= {:.6g} s is not before the end at {:.6g} s", average->from, s.end_time),
+        "average from an earlier time on");
 }
 
 void check_obstacle(const Scene& s, const ObstacleScene& o) {
@@ -338,9 +367,27 @@ void check_output(const Scene& s, Plan& plan) {
                     s.output.fields_every, frames, 1e-9 * bytes));
 }
 
+/// A force can carry the weight only where nothing else does.
+void check_carried_weight(const Scene& s) {
+  if (!s.coupling || !s.coupling->carry_weight) return;
+  for (int k = 0; k < s.box.dimension; ++k)
+    if (s.fluid.gravity[k] != 0.0 && s.box.sides[k] != SideKind::Periodic)
+      throw InputError(
+          s.file + ": coupling.carry_weight",
+          fmt::format("stands beside walls across {}, along which gravity acts: the "
+                      "walls carry the weight",
+                      "xyz"[k]),
+          fmt::format("make box.sides_{} \"periodic\", or leave the key out", "xyz"[k]));
+  if (s.fluid.body_force_ramp > 0.0)
+    throw InputError(s.file + ": coupling.carry_weight",
+                     "stands beside fluid.body_force_ramp, which would delay it too",
+                     "leave one of them out");
+}
+
 }  // namespace
 
 void check_places(const Scene& s) {
+  check_carried_weight(s);
   if (s.particles) {
     check_particles(s);
     check_starts(s);
@@ -348,6 +395,7 @@ void check_places(const Scene& s) {
   }
   for (const ObstacleScene& o : s.obstacles) check_obstacle(s, o);
   check_points(s);
+  check_sensors(s);
   check_boundaries(s);
 }
 

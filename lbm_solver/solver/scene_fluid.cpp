@@ -136,7 +136,7 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
     if (s.box.pressure_jump[axis] != 0.0)
       add_pressure_jump(p, axis, s.box.pressure_jump[axis], fluid);
   for (const CellBox& block : obstacle_blocks(s, p)) fluid.add_wall(block.from, block.to);
-  if (p.scheme != known_schemes().front())
+  if (p.scheme != SolidScheme::ImmersedMovingBoundary)
     fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(), s.numerics.spring_stiffness));
   if (s.fluid.body_force_ramp > 0.0)
     fluid.ramp_body_force({s.fluid.body_force_ramp / p.units.dt, 0.0});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <vector>
@@ -28,6 +29,8 @@ constexpr Tables make_tables() {
 
 constexpr Tables kTables = make_tables();
 
+constexpr std::uintmax_t kMost = 1 << 20;  // bytes of a file that are read at once
+
 }  // namespace
 
 std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
@@ -48,7 +51,10 @@ std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before) {
 Fingerprint fingerprint(const std::string& path, std::uint64_t most) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error(path + " cannot be read");
-  std::vector<char> buffer(1 << 20);
+  std::error_code none;
+  const std::uintmax_t size = std::filesystem::file_size(path, none);
+  std::vector<char> buffer(
+      std::min<std::uintmax_t>(none ? kMost : std::max<std::uintmax_t>(size, 1), kMost));
   Fingerprint found;
   while (file && found.bytes < most) {
     const auto want = std::min<std::uint64_t>(buffer.size(), most - found.bytes);

@@ -19,13 +19,19 @@ using namespace protocol;
 struct Options {
   std::string as, path;
   double tolerance = 0.0, timeout = 300.0;
+  bool physics = false;  ///< places in radii, loads in weights
+
+  TraceComparison comparison(const Trace& trace, std::span<const IntervalRecord> record) const {
+    return TraceComparison(physics ? physical_scales(record, trace.hello(Role::Fluid))
+                                   : largest_norms(record));
+  }
 };
 
 /// Sends the recorded states from rank 0, whatever the number of ranks, and compares the loads.
-TraceComparison play_solid(Channel& channel, const Trace& trace, double timeout) {
+TraceComparison play_solid(Channel& channel, const Trace& trace, const Options& options) {
   const auto record = timeline(trace);
-  TraceComparison result(record);
-  SolidSession session(channel, timeout);
+  TraceComparison result = options.comparison(trace, record);
+  SolidSession session(channel, options.timeout);
   session.agree(trace.hello(Role::Solid));
   const bool speaks = channel.local_rank() == 0;
   bool stop = false;
@@ -52,10 +58,10 @@ Hello hello_to_replay(const Trace& trace) {
 }
 
 /// Answers the recorded loads by particle id and compares the states.
-TraceComparison play_fluid(Channel& channel, const Trace& trace, double timeout) {
+TraceComparison play_fluid(Channel& channel, const Trace& trace, const Options& options) {
   const auto record = timeline(trace);
-  TraceComparison result(record);
-  FluidSession session(channel, hello_to_replay(trace), timeout);
+  TraceComparison result = options.comparison(trace, record);
+  FluidSession session(channel, hello_to_replay(trace), options.timeout);
   session.agree();
   std::vector<State> states;
   std::vector<Load> loads;
@@ -96,8 +102,8 @@ int run(const Options& options, std::unique_ptr<Channel>& channel, World& world)
   if (role == Role::Fluid && ranks > 1)
     throw ProgramError("start 'replay --as fluid' with one rank", kBadInput);
   const Trace trace(options.path);
-  const auto result = role == Role::Solid ? play_solid(*channel, trace, options.timeout)
-                                          : play_fluid(*channel, trace, options.timeout);
+  const auto result = role == Role::Solid ? play_solid(*channel, trace, options)
+                                          : play_fluid(*channel, trace, options);
   if (channel->local_rank() == 0)
     fmt::print("replay | {} | {}\n", role == Role::Solid ? "loads" : "states", result.text());
   return result.largest() <= options.tolerance ? kOk : kFault;
@@ -113,6 +119,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"solid", "fluid"}));
   app.add_option("--tolerance", options.tolerance, "largest relative difference that passes")
       ->check(finite_number(0.0, true));
+  app.add_flag("--physics", options.physics,
+               "measure places in radii, loads in weights; else in the largest of all");
   app.add_option("--timeout", options.timeout, "longest wait for the partner [s]")
       ->check(finite_number(0.0));
   app.add_option("trace", options.path, "file written with --record")->required();

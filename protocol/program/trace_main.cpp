@@ -56,16 +56,19 @@ int info(const std::string& path) {
   return 0;
 }
 
-int diff(const std::string& path_a, const std::string& path_b) {
-  const auto a = timeline(Trace(path_a)), b = timeline(Trace(path_b));
-  TraceComparison result(a);
+/// @param tolerance  largest difference that passes, in the scales of `physics` or of the largest
+///                   norms
+int diff(const std::string& path_a, const std::string& path_b, bool physics, double tolerance) {
+  const Trace first(path_a);
+  const auto a = timeline(first), b = timeline(Trace(path_b));
+  TraceComparison result(physics ? physical_scales(a, first.hello(Role::Fluid)) : largest_norms(a));
   for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
     result.states(a[k].head.interval, a[k].states, b[k].states);
     result.loads(a[k].head.interval, a[k].loads, b[k].loads);
   }
   fmt::print("{}\n", result.text());
   if (a.size() != b.size()) fmt::print("lengths differ: {} and {} intervals\n", a.size(), b.size());
-  return result.first() || a.size() != b.size() ? 1 : 0;
+  return result.largest() > tolerance || a.size() != b.size() ? 1 : 0;
 }
 
 /// The beginning of a recording, as if its run had been told to end there.
@@ -126,6 +129,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   std::string a, b, picture = "trace.png";
   std::int64_t intervals = 0, particle = 1;
+  bool physics = false;
+  double tolerance = 0.0;
   auto* cut_command = app.add_subcommand("cut", "keep the beginning of a recording");
   cut_command->add_option("file", a)->required();
   cut_command->add_option("out", b, "the new recording")->required();
@@ -141,11 +146,15 @@ int main(int argc, char** argv) {
   auto* diff_command = app.add_subcommand("diff", "the first difference of two recordings");
   diff_command->add_option("a", a)->required();
   diff_command->add_option("b", b)->required();
+  diff_command->add_flag("--physics", physics,
+                         "measure places in radii, loads in weights; else in the largest of all");
+  diff_command->add_option("--tolerance", tolerance, "largest difference that passes")
+      ->check(finite_number(0.0, true));
   if (const auto code = read_command_line(app, "trace", argc, argv)) return *code;
   try {
     if (cut_command->parsed()) return cut(a, b, intervals);
     if (plot_command->parsed()) return plot(a, picture, particle);
-    return info_command->parsed() ? info(a) : diff(a, b);
+    return info_command->parsed() ? info(a) : diff(a, b, physics, tolerance);
   } catch (const std::exception& error) {
     std::fflush(stdout);
     fmt::print(stderr, "trace | error | {}\n", error.what());

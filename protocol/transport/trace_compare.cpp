@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/transport/trace_compare.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +12,8 @@
 
 namespace protocol {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double norm(const Vec3& v) {
   return std::hypot(v[0], v[1], v[2]);
@@ -79,40 +82,84 @@ std::vector<IntervalRecord> timeline(const Trace& trace) {
   return result;
 }
 
-TraceComparison::TraceComparison(std::span<const IntervalRecord> scale) {
-  double radius = 0.0;
-  for (const auto& record : scale) {
-    for (const Shape& s : record.shapes) radius = std::max(radius, s.radius);
+namespace {
+
+struct Extremes {
+  double x = 0.0, v = 0.0, omega = 0.0, force = 0.0, torque = 0.0;  ///< largest norms
+  double largest_radius = 0.0, radius = kInfinity, mass = kInfinity;
+};
+
+Extremes extremes(std::span<const IntervalRecord> exchange) {
+  Extremes e;
+  for (const auto& record : exchange) {
+    for (const Shape& s : record.shapes) {
+      e.largest_radius = std::max(e.largest_radius, s.radius);
+      e.radius = std::min(e.radius, s.radius);
+      e.mass = std::min(e.mass, s.mass);
+    }
     for (const State& s : record.states) {
-      x_ = std::max(x_, norm(s.x));
-      v_ = std::max(v_, norm(s.v));
-      omega_ = std::max(omega_, norm(s.omega));
+      e.x = std::max(e.x, norm(s.x));
+      e.v = std::max(e.v, norm(s.v));
+      e.omega = std::max(e.omega, norm(s.omega));
     }
     for (const Load& l : record.loads) {
-      force_ = std::max(force_, norm(l.force));
-      torque_ = std::max(torque_, norm(l.torque));
+      e.force = std::max(e.force, norm(l.force));
+      e.torque = std::max(e.torque, norm(l.torque));
     }
   }
-  if (radius == 0.0) return;
+  return e;
+}
+
+constexpr const char* kFields[] = {"x", "v", "omega", "force", "torque"};
+
+}  // namespace
+
+Scales largest_norms(std::span<const IntervalRecord> exchange) {
+  const Extremes e = extremes(exchange);
+  if (e.largest_radius == 0.0) return {e.x, e.v, e.omega, e.force, e.torque, {}, false};
   // What symmetry makes zero is round-off; its own size is no scale. A millionth of what force and
   // torque, velocity and spin amount to by the other is.
   constexpr double part = 1e-6;
-  const double force = std::max(force_, part * torque_ / radius),
-               v = std::max(v_, part * omega_ * radius);
-  torque_ = std::max(torque_, part * force_ * radius);
-  omega_ = std::max(omega_, part * v_ / radius);
-  force_ = force;
-  v_ = v;
+  const double r = e.largest_radius;
+  return {e.x,
+          std::max(e.v, part * e.omega * r),
+          std::max(e.omega, part * e.v / r),
+          std::max(e.force, part * e.torque / r),
+          std::max(e.torque, part * e.force * r),
+          {},
+          false};
 }
 
-void TraceComparison::vectors(std::int64_t interval, std::int64_t id, const char* field,
-                              const Vec3& a, const Vec3& b, double scale) {
+Scales physical_scales(std::span<const IntervalRecord> exchange, const Hello& fluid) {
+  const Extremes e = extremes(exchange);
+  Scales scale = largest_norms(exchange);
+  scale.physical = true;
+  for (int k = 0; k < 3; ++k)
+    if (fluid.periodic[k]) scale.period[k] = fluid.box_hi[k] - fluid.box_lo[k];
+  if (e.largest_radius == 0.0) return scale;  // no particle, no difference
+  const double weight = e.mass * norm(fluid.gravity);
+  scale.x = e.radius;
+  scale.omega = std::max(scale.omega, scale.v / e.radius);
+  if (weight > 0.0) scale.force = weight;
+  scale.torque = scale.force * e.radius;
+  return scale;
+}
+
+double TraceComparison::largest() const {
+  return *std::max_element(largest_.begin(), largest_.end());
+}
+
+void TraceComparison::vectors(std::int64_t interval, std::int64_t id, int field, const Vec3& a,
+                              const Vec3& b) {
+  const double scales[] = {scale_.x, scale_.v, scale_.omega, scale_.force, scale_.torque};
   for (int k = 0; k < 3; ++k) {
     if (a[k] == b[k]) continue;
-    if (!first_) first_ = {interval, id, format("{}[{}]", field, k), a[k], b[k]};
-    const double relative = std::abs(a[k] - b[k]) / std::max(scale, 1e-300);
-    largest_ = std::isfinite(relative) ? std::max(largest_, relative)
-                                       : std::numeric_limits<double>::infinity();
+    double way = a[k] - b[k];
+    if (field == 0 && scale_.period[k] > 0.0) way = std::remainder(way, scale_.period[k]);
+    if (way == 0.0) continue;
+    if (!first_) first_ = {interval, id, format("{}[{}]", kFields[field], k), a[k], b[k]};
+    const double relative = std::abs(way) / std::max(scales[field], 1e-300);
+    largest_[field] = std::isfinite(relative) ? std::max(largest_[field], relative) : kInfinity;
   }
 }
 
@@ -128,7 +175,7 @@ void TraceComparison::records(std::int64_t interval, std::span<const Record> a,
     if (!first_)
       first_ = {interval, present.id, "particle is on one side only", static_cast<double>(a.size()),
                 static_cast<double>(b.size())};
-    largest_ = std::numeric_limits<double>::infinity();
+    largest_.fill(kInfinity);
     return;
   }
 }
@@ -136,26 +183,32 @@ void TraceComparison::records(std::int64_t interval, std::span<const Record> a,
 void TraceComparison::states(std::int64_t interval, std::span<const State> a,
                              std::span<const State> b) {
   records(interval, a, b, [&](const State& p, const State& q) {
-    vectors(interval, p.id, "x", p.x, q.x, x_);
-    vectors(interval, p.id, "v", p.v, q.v, v_);
-    vectors(interval, p.id, "omega", p.omega, q.omega, omega_);
+    vectors(interval, p.id, 0, p.x, q.x);
+    vectors(interval, p.id, 1, p.v, q.v);
+    vectors(interval, p.id, 2, p.omega, q.omega);
   });
 }
 
 void TraceComparison::loads(std::int64_t interval, std::span<const Load> a,
                             std::span<const Load> b) {
   records(interval, a, b, [&](const Load& p, const Load& q) {
-    vectors(interval, p.id, "force", p.force, q.force, force_);
-    vectors(interval, p.id, "torque", p.torque, q.torque, torque_);
+    vectors(interval, p.id, 3, p.force, q.force);
+    vectors(interval, p.id, 4, p.torque, q.torque);
   });
 }
 
 std::string TraceComparison::text() const {
   if (!first_) return "identical, bit for bit";
-  return format(
-      "first difference at interval {}, particle {}, {}: {:.17g} against {:.17g}; largest relative "
-      "difference {:.3g}",
-      first_->interval, first_->id, first_->field, first_->a, first_->b, largest_);
+  const std::string first =
+      format("first difference at interval {}, particle {}, {}: {:.17g} against {:.17g}; ",
+             first_->interval, first_->id, first_->field, first_->a, first_->b);
+  if (!scale_.physical) return first + format("largest relative difference {:.3g}", largest());
+  const auto& [x, v, omega, force, torque] = largest_;
+  return first +
+         format(
+             "largest differences: {:.3g} radii in place, {:.3g} of the fastest in "
+             "velocity ({:.3g} in angular velocity), {:.3g} weights in force ({:.3g} in torque)",
+             x, v, omega, force, torque);
 }
 
 }  // namespace protocol

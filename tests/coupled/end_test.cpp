@@ -167,41 +167,49 @@ void PrintTo(const Phase& p, std::ostream* out) {
 
 class Stopped : public testing::TestWithParam<Phase> {
  protected:
-  static JobResult run(const Phase& phase, const std::string& program, int rank) {
+  static JobResult run(const Phase& phase, int fluid_ranks, const std::string& program, int rank) {
     SettlingDisc scene;
     scene.change_scene("timeout = 60.0", "timeout = 2.0");
     scene.change_scene("end_time = 0.04", "end_time = " + phase.end_time);
     scene.change_scene("fields_every = 0.05", "fields_every = " + phase.fields_every);
     scene.set_script(phase.before + scene.script() + phase.after);
     const std::string job =
-        mpirun({kLbm + " --progress none", 2}, {kLiggghts + " -screen none", 2});
+        mpirun({kLbm + " --progress none", fluid_ranks}, {kLiggghts + " -screen none", 2});
     return test::run("(" + job + ") & job=$!; " + phase.reached +
                          "; kill -STOP $(pgrep -x -P $job " + program + " | sort -n | sed -n " +
                          std::to_string(rank + 1) + "p); wait $job",
                      scene.folder(), 40.0);
   }
-};
 
-TEST_P(Stopped, EndsTheJobWithItsName) {
-  const Phase& phase = GetParam();
-  const double limit = kLimit + 5.0;  // of which until the stage is reached
-  std::vector<std::pair<std::string, std::future<JobResult>>> jobs;
-  for (const int rank : {0, 1}) {
-    const std::string number = std::to_string(rank);
-    jobs.emplace_back("fluid rank " + number,
-                      std::async(std::launch::async, run, phase, "lbm", rank));
-    jobs.emplace_back("solid rank " + number,
-                      std::async(std::launch::async, run, phase, "liggghts", rank));
-  }
-  for (auto& [who, job] : jobs) {
+  static void expect_named(const JobResult& result, const std::string& who) {
+    const double limit = kLimit + 5.0;  // of which until the stage is reached
     SCOPED_TRACE(who);
-    const JobResult result = job.get();
     EXPECT_FALSE(result.timed_out) << "hangs: " << result.output;
     EXPECT_LT(result.seconds, limit * BPLBM_PATIENCE) << result.output;
     EXPECT_EQ(result.exit_code, 1) << result.output;
     EXPECT_NE(result.output.find("| error | " + who + " does not answer"), std::string::npos)
         << result.output;
   }
+};
+
+TEST_P(Stopped, EndsTheJobWithItsName) {
+  std::vector<std::pair<std::string, std::future<JobResult>>> jobs;
+  for (const int rank : {0, 1}) {
+    const std::string number = std::to_string(rank);
+    jobs.emplace_back("fluid rank " + number,
+                      std::async(std::launch::async, run, GetParam(), 2, "lbm", rank));
+    jobs.emplace_back("solid rank " + number,
+                      std::async(std::launch::async, run, GetParam(), 2, "liggghts", rank));
+  }
+  for (auto& [who, job] : jobs) expect_named(job.get(), who);
+}
+
+// One after the other: with five processes each, jobs side by side would wait for the cores.
+TEST_P(Stopped, Slow_OneOfThreeAndTwo) {
+  for (const int rank : {0, 1, 2})
+    expect_named(run(GetParam(), 3, "lbm", rank), "fluid rank " + std::to_string(rank));
+  for (const int rank : {0, 1})
+    expect_named(run(GetParam(), 3, "liggghts", rank), "solid rank " + std::to_string(rank));
 }
 
 const std::string kUntilItRuns = "until [ -s out/probes.csv ]; do sleep 0.1; done; sleep 0.5";

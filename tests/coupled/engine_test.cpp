@@ -213,11 +213,15 @@ TEST_P(SameScene, WithAnyEngineTheDiscFallsAlike) {
     if (engine == "yade" && (!installed(engine) || scene.ends_with("disc_migration")))
       continue;  // its boxes are periodic along all axes or none
     const auto job = test::run(
-        test::mpirun(
-            {test::kLbm + " " + scene + "/scene.toml overlay.toml --progress none --out " + engine},
-            {command_for(scene, engine)}),
+        test::mpirun({test::kLbm + " " + scene + "/scene.toml overlay.toml --progress none --out " +
+                      engine + " --record " + engine + ".h5"},
+                     {command_for(scene, engine)}),
         folder.path(), 60.0);
     ASSERT_EQ(job.exit_code, 0) << engine << job.output;
+    const auto diff = test::run(
+        test::kBin + "/trace diff --physics --tolerance 1e-6 liggghts.h5 " + engine + ".h5",
+        folder.path(), 20.0);
+    EXPECT_EQ(diff.exit_code, 0) << engine << diff.output;
     tracks.push_back(track(test::read_file(folder.path() + "/" + engine + "/probes.csv")));
   }
   double fastest = 0.0;
@@ -234,9 +238,31 @@ TEST_P(SameScene, WithAnyEngineTheDiscFallsAlike) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SameScene, testing::Values("settling_disc", "disc_migration"),
                          [](const auto& info) { return std::string(info.param); });
 
+// What was recorded with one engine is played to the others: none needs the fluid to be compared.
+TEST(Recording, OfOneEngineIsFollowedByEveryOther) {
+  const std::string scene = BPLBM_SOURCE_DIR "/cases/settling_disc";
+  const test::TemporaryFolder folder;
+  folder.write("overlay.toml", "[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.1\n");
+  const std::string lbm =
+      test::kLbm + " " + scene + "/scene.toml overlay.toml --progress none --out out --record a.h5";
+  const auto recorded =
+      test::run(test::mpirun({lbm}, {command_for(scene, "python")}), folder.path(), 60.0);
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.output;
+  for (const std::string engine : {"liggghts", "lammps", "reference", "python", "yade"}) {
+    if (!installed(engine)) continue;
+    const auto job =
+        test::run(test::mpirun({test::kReplay + " --as fluid --physics --tolerance 1e-9 a.h5"},
+                               {command_for(scene, engine)}),
+                  folder.path(), 60.0);
+    EXPECT_EQ(job.exit_code, 0) << engine << job.output;
+    EXPECT_NE(job.output.find("replay | states | "), std::string::npos) << engine << job.output;
+  }
+}
+
 class EngineRestart : public testing::TestWithParam<const char*> {
  protected:
-  EngineRestart() {
+  void SetUp() override {
+    if (!installed(GetParam())) GTEST_SKIP() << GetParam() << " is not installed";
     folder_.write("overlay.toml",
                   "[particles]\nstart = [[0.01, 0.005]]\n[numerics]\ncells_per_diameter = 10\n"
                   "[run]\nend_time = 0.3\ncheckpoint_every = 0.1\n");
@@ -291,7 +317,7 @@ TEST_P(EngineRestart, AFullDiskOfTheSolidLeavesTheCheckpointBefore) {
             test::read_file(folder_.path() + "/whole/probes.csv"));
 }
 INSTANTIATE_TEST_SUITE_P(All, EngineRestart,
-                         testing::Values("liggghts", "lammps", "reference", "python"),
+                         testing::Values("liggghts", "lammps", "reference", "python", "yade"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

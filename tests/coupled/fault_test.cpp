@@ -386,11 +386,11 @@ TEST(Launch, AStranger) {
 // Two solid ranks that start one after the other: whoever is there waits for the slower one.
 TEST(Launch, ASlowEngineIsWaitedForAsLongAsTheSceneSays) {
   SettlingDisc scene;
-  const std::string slow =
-      "sh -c 'sleep $((4 * OMPI_COMM_WORLD_RANK - 3)); exec " + test::kBin + "/c_engine'";
+  const std::string slow = test::kBin + "/leaving_solid slow 3";  // ranks 1 and 2 of the job
   scene.change_scene("timeout = 60.0", "timeout = 60.0\nconnect_timeout = 2.0");
   expect_end(test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0), 1,
-             {"lbm | error | rank(s) 2 of this MPI job did not say within 2 s"});
+             {"lbm | error | rank(s) 1 2 of this MPI job did not say within 2 s",
+              "coupling.connect_timeout = SECONDS in the scene"});
   scene.change_scene("connect_timeout = 2.0", "connect_timeout = 20.0");
   const auto job = test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0);
   EXPECT_EQ(job.exit_code, 0) << job.output;
@@ -427,6 +427,22 @@ TEST_P(ReasonOfTheEnd, TravelsToTheFluid) {
     EXPECT_EQ(job.output.find(BPLBM_SOURCE_DIR "/liggghts_coupling"), std::string::npos);
     EXPECT_EQ(job.output.find("../liggghts_coupling"), std::string::npos) << job.output;
   }
+}
+
+// LIGGGHTS' own warnings are not left in its log, and come with the line that they are of.
+TEST_P(ReasonOfTheEnd, AndWarningsReachTheTerminal) {
+  test::SettlingDisc scene;
+  scene.set_script(test::replaced(scene.script(), "fix              fluid",
+                                  "thermo_modify norm no\nthermo_style one\nfix fluid"));
+  const test::JobResult job = scene.run("", 2, 60.0, GetParam());
+  expect_end(job, 0, {});
+  const std::string said =
+      "liggghts | warning | New thermo_style command, previous thermo_modify settings will be lost "
+      "(at the line: thermo_style one)";
+  const std::size_t at = job.output.find(said);
+  ASSERT_NE(at, std::string::npos) << job.output;
+  EXPECT_EQ(job.output.find(said, at + 1), std::string::npos) << "once:\n" << job.output;
+  EXPECT_NE(test::read_file(scene.folder() + "/log.liggghts").find(said), std::string::npos);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "lbm_solver/base/vec3.h"
 #include "lbm_solver/collision/two_rates.h"
+#include "lbm_solver/viscosity/constant_viscosity.h"
 
 namespace test {
 
@@ -25,7 +26,7 @@ class TrtCell final : public CellCollision<L> {
   void collide(double (&f)[L::Q]) const override { trt_(f); }
 
  private:
-  lbm::TwoRates<L, lbm::MagicRate, lbm::Laminar, lbm::NoForce<L>> trt_;
+  lbm::TwoRates<L, lbm::MagicRate, lbm::ConstantViscosity, lbm::NoForce<L>> trt_;
 };
 
 template <class L>

@@ -84,13 +84,12 @@ struct Flow {
     u = reynolds * nu / (2.0 * radius);
     g = a.exact(cells) * nu * u / a.volume(cells);
     relaxation = a.volume(cells) / (a.exact(cells) * nu);
-    choice = {"trt",
-              "none",
-              true,
-              term,
-              {.tau = tau, .magic = by_resistance(term) ? kResistanceMagic : 3.0 / 16.0},
-              a.dimension == 2 ? WeightRule::Viscous : WeightRule::Balanced,
-              a.dimension == 2 ? "D2Q9" : "D3Q19"};
+    choice = {
+        .force = true,
+        .solid_term = term,
+        .parameters = {.tau = tau, .magic = by_resistance(term) ? kResistanceMagic : 3.0 / 16.0},
+        .weight = a.dimension == 2 ? WeightRule::Viscous : WeightRule::Balanced,
+        .lattice = a.dimension == 2 ? "D2Q9" : "D3Q19"};
   }
   /// @param sense  1: the fluid is driven along x, -1: against it
   Fluid fluid(double sense) const {

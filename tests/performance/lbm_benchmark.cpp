@@ -15,6 +15,7 @@
 
 #include "lbm_solver/immersed/boundary_trace.h"
 #include "lbm_solver/solver/fluid.h"
+#include "lbm_solver/viscosity/relaxation_table.h"
 #include "protocol/program/command_line.h"
 #include "tests/performance/aos_baseline.h"
 
@@ -24,7 +25,8 @@ using namespace lbm;
 
 /// One line of the result.
 struct Entry {
-  std::string name, collision;
+  std::string name;
+  CollisionOperator collision = CollisionOperator::Trt;
   int grid = 0, threads = 1;
   double covered = 0.0, mlups = 0.0;
   bool moving = false;      ///< the bodies are placed anew in each step
@@ -224,25 +226,33 @@ void add_kernel(Entry e, const KernelChoice& choice) {
   add(e, [=](benchmark::State& s) { kernel_benchmark(s, e, choice); });
 }
 
+/// A viscosity that falls with the root of the shear rate, within bounds.
+std::shared_ptr<const RelaxationTable> gel() {
+  return std::make_shared<RelaxationTable>([](double shear_rate) {
+    return 0.5 + 3.0 * std::clamp(3e-3 / std::sqrt(shear_rate), 1e-3, 3.0);
+  });
+}
+
 void register_setting(const Setting& on, int threads) {
   for (int t = 1; t <= threads; ++t) {
     const Entry bandwidth = on.entry("bandwidth", t);
     add(bandwidth, [=](benchmark::State& s) { bandwidth_benchmark(s, bandwidth); });
     Entry one_by_one = on.entry("trt one by one", t);
     one_by_one.one_by_one = true;
-    add_kernel(one_by_one, {.collision = "trt"});
-    for (const std::string& collision : known_collisions())
-      if (on.precision == Precision::Double || collision != "recursive_regularised")
-        add_kernel(on.entry(collision, t), {.collision = collision});
+    add_kernel(one_by_one, {});
+    for (const CollisionOperator collision : known_collisions())
+      if (on.precision == Precision::Double || collision != CollisionOperator::RecursiveRegularised)
+        add_kernel(on.entry(name_of(collision), t), {.collision = collision});
   }
-  for (const char* collision : {"bgk", "trt"})
-    add_kernel(
-        on.entry(std::string(collision) + "+les"),
-        {.collision = collision, .turbulence = "smagorinsky", .parameters = {.smagorinsky = 0.1}});
-  add_kernel(on.entry("trt+force"),
-             {.collision = "trt", .force = true, .parameters = {.force_x = 1e-7}});
-  const KernelChoice solids{.collision = "trt", .solid_term = "layered_resistance"};
-  const KernelChoice linear{.collision = "trt", .solid_term = "layered_holdych"};
+  for (const auto collision : {CollisionOperator::Bgk, CollisionOperator::Trt}) {
+    add_kernel(on.entry(name_of(collision) + "+les"),
+               {.collision = collision, .parameters = {.smagorinsky = 0.1}});
+    add_kernel(on.entry(name_of(collision) + "+gel"),
+               {.collision = collision, .parameters = {.viscosity_table = gel()}});
+  }
+  add_kernel(on.entry("trt+force"), {.force = true, .parameters = {.force_x = 1e-7}});
+  const KernelChoice solids{.solid_term = "layered_resistance"};
+  const KernelChoice linear{.solid_term = "layered_holdych"};
   for (const double covered : {0.0, 0.1, 0.15, 0.4})
     for (const bool moving : {false, true}) {
       if (covered == 0.0 && moving) continue;
@@ -296,7 +306,7 @@ nlohmann::json report(const Collector& c) {
                baseline);
     list.push_back({{"name", e.name},
                     {"lattice", e.lattice},
-                    {"collision", e.collision},
+                    {"collision", name_of(e.collision)},
                     {"precision", text(e.precision)},
                     {"grid", e.grid},
                     {"threads", e.threads},

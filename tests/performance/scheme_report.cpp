@@ -37,43 +37,51 @@ constexpr double kFraction = 0.2;
 const double kDrag = test::kDiscDrag.at(kFraction);
 
 struct Row {
-  std::string name, collision, scheme, term;
+  std::string name;
+  CollisionOperator collision;
+  std::string scheme, term;
   WeightRule weight = WeightRule::Viscous;
 };
 
 const std::vector<Row> kRows{
-    {"default, bodies at rest: TRT, resistance", "trt", "", "resistance"},
-    {"default, free bodies: TRT, layered resistance", "trt", "", "layered_resistance"},
-    {"default above Re_h 5: CM, layered Noble–Torczynski, B(ε,τ)", "central_moment", "",
-     "layered_noble_torczynski"},
-    {"papers: BGK, Noble–Torczynski, B(ε,τ)", "bgk", "", "noble_torczynski"},
-    {"BGK, Noble–Torczynski, B = ε", "bgk", "", "noble_torczynski", WeightRule::Fraction},
-    {"TRT, Noble–Torczynski, B(ε,τ)", "trt", "", "noble_torczynski"},
-    {"TRT, Holdych, B(ε,τ)", "trt", "", "holdych"},
-    {"TRT, layered Holdych, B(ε,τ)", "trt", "", "layered_holdych"},
-    {"TRT, Holdych, B = ε", "trt", "", "holdych", WeightRule::Fraction},
-    {"BGK, superposition, B(ε,τ)", "bgk", "", "superposition"},
-    {"TRT, superposition, B = ε", "trt", "", "superposition", WeightRule::Fraction},
-    {"BGK, bounce-back (staircase)", "bgk", "bounce_back", "none"},
-    {"TRT, bounce-back (staircase)", "trt", "bounce_back", "none"},
-    {"TRT, interpolated bounce-back", "trt", "interpolated_bounce_back", "none"},
-    {"BGK, implicit immersed boundary", "bgk", "implicit_immersed_boundary", "none"},
-    {"TRT, implicit immersed boundary", "trt", "implicit_immersed_boundary", "none"},
-    {"BGK, spring immersed boundary", "bgk", "spring_immersed_boundary", "none"},
+    {"default, bodies at rest: TRT, resistance", CollisionOperator::Trt, "", "resistance"},
+    {"default, free bodies: TRT, layered resistance", CollisionOperator::Trt, "",
+     "layered_resistance"},
+    {"default above Re_h 5: CM, layered Noble–Torczynski, B(ε,τ)", CollisionOperator::CentralMoment,
+     "", "layered_noble_torczynski"},
+    {"papers: BGK, Noble–Torczynski, B(ε,τ)", CollisionOperator::Bgk, "", "noble_torczynski"},
+    {"BGK, Noble–Torczynski, B = ε", CollisionOperator::Bgk, "", "noble_torczynski",
+     WeightRule::Fraction},
+    {"TRT, Noble–Torczynski, B(ε,τ)", CollisionOperator::Trt, "", "noble_torczynski"},
+    {"TRT, Holdych, B(ε,τ)", CollisionOperator::Trt, "", "holdych"},
+    {"TRT, layered Holdych, B(ε,τ)", CollisionOperator::Trt, "", "layered_holdych"},
+    {"TRT, Holdych, B = ε", CollisionOperator::Trt, "", "holdych", WeightRule::Fraction},
+    {"BGK, superposition, B(ε,τ)", CollisionOperator::Bgk, "", "superposition"},
+    {"TRT, superposition, B = ε", CollisionOperator::Trt, "", "superposition",
+     WeightRule::Fraction},
+    {"BGK, bounce-back (staircase)", CollisionOperator::Bgk, "bounce_back", "none"},
+    {"TRT, bounce-back (staircase)", CollisionOperator::Trt, "bounce_back", "none"},
+    {"TRT, interpolated bounce-back", CollisionOperator::Trt, "interpolated_bounce_back", "none"},
+    {"BGK, implicit immersed boundary", CollisionOperator::Bgk, "implicit_immersed_boundary",
+     "none"},
+    {"TRT, implicit immersed boundary", CollisionOperator::Trt, "implicit_immersed_boundary",
+     "none"},
+    {"BGK, spring immersed boundary", CollisionOperator::Bgk, "spring_immersed_boundary", "none"},
 };
 
 Fluid make(const Row& row, const Domain& domain, double tau, const Vec3& force) {
-  KernelChoice choice{row.collision,
-                      "none",
-                      force.norm() > 0.0,
-                      row.term,
-                      {.tau = tau,
-                       .magic = by_resistance(row.term) ? kResistanceMagic : 3.0 / 16.0,
-                       .force_x = force.x(),
-                       .force_y = force.y()},
-                      row.weight};
+  KernelChoice choice{
+      .collision = row.collision,
+      .force = force.norm() > 0.0,
+      .solid_term = row.term,
+      .parameters = {.tau = tau,
+                     .magic = by_resistance(row.term) ? kResistanceMagic : 3.0 / 16.0,
+                     .force_x = force.x(),
+                     .force_y = force.y()},
+      .weight = row.weight};
   Fluid fluid(domain, choice);
-  if (!row.scheme.empty()) fluid.use(make_scheme(row.scheme, domain, fluid.lattice()));
+  if (!row.scheme.empty())
+    fluid.use(make_scheme(solid_scheme(row.scheme), domain, fluid.lattice()));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;

@@ -87,7 +87,7 @@ class Cases {
   explicit Cases(const NumericsScene& numerics) : numerics_(numerics) {}
 
   std::string collision() const {
-    return make_plan(scene_of(numerics_, 48, 44, 0.7)).kernel.collision;
+    return name_of(make_plan(scene_of(numerics_, 48, 44, 0.7)).kernel.collision);
   }
 
   double momentum() const { return largest_rest(two_discs(), 200); }
@@ -205,7 +205,7 @@ class Cases {
     const Scene scene = scene_of(numerics_, 48, 44, 0.7);
     const Plan plan = make_plan(scene);
     Fluid fluid = make_fluid(scene, plan);
-    test::MomentumBalance balance(fluid, plan.scheme);
+    test::MomentumBalance balance(fluid, name_of(plan.scheme));
     double largest = 0.0;
     for (int step = 0; step < steps; ++step) {
       keep_largest(largest, balance.step(discs));
@@ -239,7 +239,7 @@ class Cases {
     const Plan plan = make_plan(scene);
     Fluid fluid = make_fluid(scene, plan);
     stir(fluid);
-    test::MomentumBalance balance(fluid, plan.scheme);
+    test::MomentumBalance balance(fluid, name_of(plan.scheme));
     auto discs = two_discs();
     double largest = 0.0;
     for (int step = 0; step < to; ++step) {

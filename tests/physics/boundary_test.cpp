@@ -22,10 +22,10 @@ void add_lid(Fluid& fluid, double u, const InTime& in_time = {}) {
 }
 
 TEST(Couette, IsLinearToRoundOffWithEveryOperator) {
-  for (const std::string& collision : known_collisions()) {
+  for (const CollisionOperator collision : known_collisions()) {
     const int nx = 5, ny = 16;
     Fluid fluid({nx, ny, Side::Periodic, Side::Wall},
-                {collision, "none", false, "none", {.tau = 1.0}});
+                {.collision = collision, .parameters = {.tau = 1.0}});
     add_lid(fluid, 0.01);
     run(fluid, 20000);
     for (int y = 0; y < ny; ++y)
@@ -38,7 +38,7 @@ TEST(Poiseuille, IsExactWithTrtAndTheMagicRate) {
   for (const double tau : {0.55, 0.8, 1.5}) {
     const double nu = (tau - 0.5) / 3.0, u = 0.01, g = 8.0 * nu * u / (ny * ny);
     Fluid fluid({nx, ny, Side::Periodic, Side::Wall},
-                {"trt", "none", true, "none", {.tau = tau, .force_x = g}});
+                {.force = true, .parameters = {.tau = tau, .force_x = g}});
     run(fluid, static_cast<int>(4.0 * ny * ny / nu));
     for (int y = 0; y < ny; ++y) {
       const double s = y + 0.5;
@@ -49,14 +49,13 @@ TEST(Poiseuille, IsExactWithTrtAndTheMagicRate) {
 
 /// Every operator and the body force: the momentum of a periodic box grows by F a step.
 TEST(BodyForce, GivesItsMomentumToEveryOperator) {
-  for (const std::string& collision : known_collisions())
-    for (const char* turbulence : {"none", "smagorinsky"}) {
+  for (const CollisionOperator collision : known_collisions())
+    for (const double smagorinsky : {0.0, 0.1}) {
       Fluid fluid({9, 7, Side::Periodic, Side::Periodic},
-                  {collision,
-                   turbulence,
-                   true,
-                   "none",
-                   {.tau = 0.6, .smagorinsky = 0.1, .force_x = 1e-5, .force_y = -2e-5}});
+                  {.collision = collision,
+                   .force = true,
+                   .parameters = {
+                       .tau = 0.6, .smagorinsky = smagorinsky, .force_x = 1e-5, .force_y = -2e-5}});
       run(fluid, 100);
       // rho u = Σ c f + F/2 after 100 steps from Σ c f = 0; round-off of 100 whole populations
       EXPECT_NEAR(fluid.cell(4, 3).u.x(), 100.5e-5, 1e-14) << collision;
@@ -70,10 +69,11 @@ TEST(BodyForce, GivesItsMomentumToEveryOperator) {
 TEST(BodyForce, ComesUpInItsRamp) {
   const InTime ramp{40.0, 0.0};
   const double force = 1e-5;
-  for (const std::string& collision : known_collisions()) {
+  for (const CollisionOperator collision : known_collisions()) {
     const auto fluid = [&] {
-      Fluid f({9, 7, Side::Periodic, Side::Periodic},
-              {collision, "none", true, "none", {.tau = 0.6, .force_x = force}});
+      Fluid f(
+          {9, 7, Side::Periodic, Side::Periodic},
+          {.collision = collision, .force = true, .parameters = {.tau = 0.6, .force_x = force}});
       f.ramp_body_force(ramp);
       return f;
     };
@@ -99,7 +99,7 @@ double stokes_error(int cells_per_depth) {
   const double tau = 0.8, nu = (tau - 0.5) / 3.0, k = 1.0 / cells_per_depth, w = 2.0 * nu * k * k;
   const int nx = 3, ny = 12 * cells_per_depth;
   const double period = 2.0 * pi / w, u = 0.01;
-  Fluid fluid({nx, ny, Side::Periodic, Side::Wall}, {"trt", "none", false, "none", {.tau = tau}});
+  Fluid fluid({nx, ny, Side::Periodic, Side::Wall}, {.parameters = {.tau = tau}});
   add_lid(fluid, u, InTime{0.0, period});
   const int steps = static_cast<int>(8.0 * period);
   run(fluid, steps);
@@ -123,11 +123,11 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
   // Couette: |S| = shear rate, nu_t = (S_c)² |S|, the same everywhere; the wall's force tells it
   const int nx = 5, ny = 16;
   const double tau = 0.502, s_c = 0.3, u = 0.02, rate = u / ny;
-  const auto check = [&](const std::string& collision, const std::string& lattice) {
+  const auto check = [&](CollisionOperator collision, const std::string& lattice) {
     // Λ = 3/16 would make TRT's odd rate 1/94 here: its odd modes then carry tau^- u ∇u into Q_xx,
     // which the model takes for strain (0.9 % in the stress at this speed, 5 % at u = 0.1).
-    KernelChoice les{
-        collision, "smagorinsky", false, "none", {.tau = tau, .magic = 1e-3, .smagorinsky = s_c}};
+    KernelChoice les{.collision = collision,
+                     .parameters = {.tau = tau, .magic = 1e-3, .smagorinsky = s_c}};
     les.lattice = lattice;
     const int nz = lattice == "D2Q9" ? 1 : 3;
     Fluid fluid({nx, ny, Side::Periodic, Side::Wall, nz, Side::Periodic}, les);
@@ -147,14 +147,14 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
     const double nu = (tau - 0.5) / 3.0 + s_c * s_c * rate, total = 3.0 * nu + 0.5;
     EXPECT_NEAR(-(1.0 - 0.5 / total) * stress / (nu * rate), 1.0, 1e-3) << collision << lattice;
   };
-  for (const std::string& collision : known_collisions())
+  for (const CollisionOperator collision : known_collisions())
     for (const char* lattice : {"D2Q9", "D3Q19", "D3Q27"}) check(collision, lattice);
 }
 
 /// Part of a sound pulse that comes back from the right side.
 double reflection(bool absorbing) {
   const int nx = 400, ny = 4, width = 12;
-  Fluid fluid({nx, ny, Side::Wall, Side::Periodic}, {"trt", "none", false, "none", {.tau = 0.55}});
+  Fluid fluid({nx, ny, Side::Wall, Side::Periodic}, {.parameters = {.tau = 0.55}});
   const Opening right = Opening::whole(fluid.domain(), SideName::Right);
   if (absorbing)
     test::add_outflow(fluid, right, 0.0, 0.58 / nx);
@@ -182,7 +182,7 @@ TEST(Outflow, ReflectsLittle) {
 TEST(Outflow, LetsFluidInNoFasterThanBernoulli) {
   for (const double drho : {0.001, 0.01}) {
     Fluid fluid({60, 30, Side::Wall, Side::Wall},
-                {"central_moment", "none", false, "none", {.tau = 0.51}});
+                {.collision = CollisionOperator::CentralMoment, .parameters = {.tau = 0.51}});
     test::add_pressure(fluid, Opening::whole(fluid.domain(), SideName::Left), -drho, {500.0, 0.0});
     test::add_outflow(fluid, Opening::whole(fluid.domain(), SideName::Right), 0.0, 0.01);
     double largest = 0.0;
@@ -199,8 +199,9 @@ TEST(Outflow, LetsFluidInNoFasterThanBernoulli) {
 /// Discs at different speeds leave a closed box through an open side, three at a time: the fluid
 /// that takes their place comes in there, and moves about as fast as they do.
 TEST(Outflow, GrainsPassThrough) {
-  Fluid fluid({60, 60, Side::Wall, Side::Wall},
-              {"central_moment", "none", false, "layered_noble_torczynski", {.tau = 0.51}});
+  Fluid fluid({60, 60, Side::Wall, Side::Wall}, {.collision = CollisionOperator::CentralMoment,
+                                                 .solid_term = "layered_noble_torczynski",
+                                                 .parameters = {.tau = 0.51}});
   test::add_outflow(fluid, Opening::whole(fluid.domain(), SideName::Right), 0.0, 0.01);
   double largest = 0.0;
   for (int step = 0; step < 6000; ++step) {
@@ -220,7 +221,7 @@ TEST(Outflow, GrainsPassThrough) {
 TEST(ImpulsivePressure, WithARampOvershootsLittle) {
   const int nx = 120, ny = 5;
   const double drho = 0.01, sound = nx * std::sqrt(3.0);
-  Fluid fluid({nx, ny, Side::Wall, Side::Periodic}, {"trt", "none", false, "none", {.tau = 0.6}});
+  Fluid fluid({nx, ny, Side::Wall, Side::Periodic}, {.parameters = {.tau = 0.6}});
   test::add_pressure(fluid, Opening::whole(fluid.domain(), SideName::Left), drho,
                      {6.0 * sound, 0.0});
   double largest = 0.0;
@@ -233,11 +234,11 @@ TEST(ImpulsivePressure, WithARampOvershootsLittle) {
 }
 
 /// Double shear layer [MinionBrown1997], N = 128, kappa = 80, to t = 1.5: did it stay bounded?
-bool shear_layer_bounded(const std::string& collision, double reynolds, double u) {
+bool shear_layer_bounded(CollisionOperator collision, double reynolds, double u) {
   const int n = 128;
   const double nu = u * n / reynolds;
   Fluid fluid({n, n, Side::Periodic, Side::Periodic},
-              {collision, "none", false, "none", {.tau = 0.5 + 3.0 * nu}});
+              {.collision = collision, .parameters = {.tau = 0.5 + 3.0 * nu}});
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
       const double a = (x + 0.5) / n, b = (y + 0.5) / n;
@@ -253,7 +254,8 @@ bool shear_layer_bounded(const std::string& collision, double reynolds, double u
 TEST(ShearLayer, CentralMomentsAndRecursiveRegularisedStayBoundedInAllSixCases) {
   for (const double reynolds : {1e4, 1e5})
     for (const double u : {0.05, 0.1, 0.2})
-      for (const char* collision : {"central_moment", "recursive_regularised"})
+      for (const auto collision :
+           {CollisionOperator::CentralMoment, CollisionOperator::RecursiveRegularised})
         EXPECT_TRUE(shear_layer_bounded(collision, reynolds, u))
             << collision << ' ' << reynolds << ' ' << u;
 }

@@ -12,8 +12,8 @@ namespace {
 using namespace lbm;
 using std::numbers::pi;
 
-KernelChoice choice(const std::string& collision, double tau) {
-  return {collision, "none", false, "none", {.tau = tau}};
+KernelChoice choice(CollisionOperator collision, double tau) {
+  return {.collision = collision, .parameters = {.tau = tau}};
 }
 
 double viscosity(double tau) {
@@ -22,7 +22,7 @@ double viscosity(double tau) {
 
 /// Relative L2 error of Taylor–Green vortices, u = U(cos kx sin ky, -sin kx cos ky) exp(-2 nu k²
 /// t), after the time in which they decay to 1/e, in diffusive scaling (U ~ 1/N).
-double taylor_green_error(const std::string& collision, int n) {
+double taylor_green_error(CollisionOperator collision, int n) {
   const double tau = 0.8, nu = viscosity(tau), k = 2.0 * pi / n, u0 = 0.64 / n;
   Fluid fluid({n, n, Side::Periodic, Side::Periodic}, choice(collision, tau));
   const auto exact = [&](int x, int y, double t) -> Vec3 {
@@ -47,7 +47,7 @@ double taylor_green_error(const std::string& collision, int n) {
 }
 
 TEST(TaylorGreen, ConvergesWithSecondOrder) {
-  for (const char* collision : {"bgk", "trt"}) {
+  for (const auto collision : {CollisionOperator::Bgk, CollisionOperator::Trt}) {
     const double coarse = taylor_green_error(collision, 32),
                  fine = taylor_green_error(collision, 64);
     const double order = std::log2(coarse / fine);
@@ -65,7 +65,7 @@ double shear_decay_error(int h, double tau, bool across_x) {
   const int length = 11;  // along the walls; no multiple of the SIMD width
   Fluid fluid(across_x ? Domain{h, length, Side::Wall, Side::Periodic}
                        : Domain{length, h, Side::Periodic, Side::Wall},
-              choice("trt", tau));
+              choice(CollisionOperator::Trt, tau));
   const auto at = [&](int i, int j) { return across_x ? std::pair{i, j} : std::pair{j, i}; };
   for (int i = 0; i < h; ++i)
     for (int j = 0; j < length; ++j) {
@@ -100,9 +100,9 @@ TEST(HalfWayWalls, ShearFlowDecaysAsItShouldInBothDirections) {
     }
 }
 
-class ClosedBoxOf : public testing::TestWithParam<std::string> {};
+class ClosedBoxOf : public testing::TestWithParam<CollisionOperator> {};
 INSTANTIATE_TEST_SUITE_P(Operators, ClosedBoxOf, testing::ValuesIn(known_collisions()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& info) { return name_of(info.param); });
 
 TEST_P(ClosedBoxOf, KeepsItsMassToRoundOff) {
   Fluid fluid({37, 29, Side::Wall, Side::Wall}, choice(GetParam(), 0.6));
@@ -118,14 +118,14 @@ TEST_P(ClosedBoxOf, KeepsItsMassToRoundOff) {
 }
 
 TEST(ClosedBox, AtRestStaysExactlyAtRest) {
-  Fluid fluid({21, 13, Side::Wall, Side::Periodic}, choice("trt", 0.9));
+  Fluid fluid({21, 13, Side::Wall, Side::Periodic}, choice(CollisionOperator::Trt, 0.9));
   for (int s = 0; s < 100; ++s) fluid.step();
   EXPECT_EQ(fluid.extremes().max_speed, 0.0);
   EXPECT_EQ(fluid.extremes().mass_excess, 0.0);
 }
 
 TEST(Extremes, FindsThePlaceOfAValueThatIsNotFinite) {
-  Fluid fluid({40, 30, Side::Wall, Side::Wall}, choice("trt", 0.9));
+  Fluid fluid({40, 30, Side::Wall, Side::Wall}, choice(CollisionOperator::Trt, 0.9));
   fluid.arriving(3, 17, 9) = std::nan("");
   const auto e = fluid.extremes();
   EXPECT_FALSE(e.finite);
@@ -135,9 +135,9 @@ TEST(Extremes, FindsThePlaceOfAValueThatIsNotFinite) {
 
 TEST(Memory, IsTakenForSolidsOnlyWhereTheyCanBe) {
   const Domain box{64, 48, Side::Wall, Side::Wall};
-  KernelChoice with_solids = choice("trt", 0.9);
+  KernelChoice with_solids = choice(CollisionOperator::Trt, 0.9);
   with_solids.solid_term = "holdych";
-  const Fluid pure(box, choice("trt", 0.9));
+  const Fluid pure(box, choice(CollisionOperator::Trt, 0.9));
   Fluid covered(box, with_solids);
   const double cells = 64.0 * 48.0 * 9.0 * sizeof(double);
   EXPECT_FALSE(pure.bytes().contains("solids"));

@@ -34,7 +34,7 @@ Released release(double ratio, double viscosity, double seconds, double early,
   scene.coupling.emplace().virtual_mass = virtual_mass;
   scene.particles.emplace();
   Fluid fluid = make({"", "layered_resistance"}, {8 * cells, 16 * cells, Side::Wall, Side::Wall},
-                     "trt", 0.5 + 3.0 * viscosity * dt / (dx * dx));
+                     CollisionOperator::Trt, 0.5 + 3.0 * viscosity * dt / (dx * dx));
   Particles particles(units, scene, fluid.domain(), "layered_resistance");
   const double mass = ratio * 1000.0 * std::numbers::pi * radius * radius;
   protocol::Particle p{{1, {0.01, 0.02, 0.0}, {}, {}},
@@ -97,7 +97,7 @@ TEST(LightParticles, VirtualMassDoesNotChangeTheMotion) {
 }
 
 /// A free disc in a fluid at rest; see test::free_run.
-FreeRun free_run(const Domain& domain, const Case& c, const std::string& collision, double tau,
+FreeRun free_run(const Domain& domain, const Case& c, CollisionOperator collision, double tau,
                  double ratio, double radius, const Vec3& start, const Vec3& gravity, int steps,
                  int fluid_steps = 1) {
   Scene scene;
@@ -164,8 +164,8 @@ TEST(PeriodicCrossing, OfFacesAndCornersChangesNoTrajectory) {
   const Domain domain{48, 40, Side::Periodic, Side::Periodic};
   const Vec3 inside(20.0 + 77.0 / 1024, 19.0 + 301.0 / 1024), gravity(2e-5, -1e-5);
   const auto from = [&](const Vec3& start) {
-    return free_run(domain, {"", "layered_resistance"}, "trt", 0.7, 2.5, 5.25, start, gravity,
-                    1000);
+    return free_run(domain, {"", "layered_resistance"}, CollisionOperator::Trt, 0.7, 2.5, 5.25,
+                    start, gravity, 1000);
   };
   const FreeRun reference = from(inside);
   EXPECT_GT((reference.place.back() - inside).norm(), 2.0);  // it goes somewhere
@@ -181,8 +181,9 @@ TEST(FastSettling, HasLittleForceNoiseAtReynolds300) {
   // %
   const Domain domain{96, 500, Side::Wall, Side::Wall};
   const double gravity = 4.4e-4, radius = 6.0, ratio = 1.25;
-  const FreeRun run = free_run(domain, {"", "layered_noble_torczynski"}, "central_moment", 0.5048,
-                               ratio, radius, {47.7, 460.3}, {0.0, -gravity}, 8000);
+  const FreeRun run =
+      free_run(domain, {"", "layered_noble_torczynski"}, CollisionOperator::CentralMoment, 0.5048,
+               ratio, radius, {47.7, 460.3}, {0.0, -gravity}, 8000);
   const double speed = -run.velocity[7999].y(), viscosity = 0.0048 / 3.0;
   EXPECT_NEAR(speed * 2.0 * radius / viscosity, 310.0, 60.0);
   double square = 0.0;
@@ -205,7 +206,7 @@ double viscosity_gain(const Case& c, double tau, double diameter, double fractio
   const int n = static_cast<int>(std::lround(std::sqrt(area / fraction)));
   const Domain domain{n, n, Side::Periodic, Side::Wall};
   const Vec3 wall(0.5 * shear * n, 0.0);
-  Fluid fluid = make(c, domain, "trt", tau);
+  Fluid fluid = make(c, domain, CollisionOperator::Trt, tau);
   for (const auto& [side, u] : {std::pair{SideName::Top, wall}, {SideName::Bottom, Vec3(-wall)}})
     test::add_velocity(fluid, Opening::whole(domain, side), u);
   for (int y = 0; y < n; ++y)
@@ -240,8 +241,8 @@ TEST(DiluteSuspension, HasTheViscosityOfFreeDiscs) {
 TEST(Averaging, OverSeveralFluidStepsKeepsTheTerminalVelocity) {
   const Domain domain{64, 300, Side::Wall, Side::Wall};
   const auto speed = [&](int fluid_steps) {
-    return free_run(domain, {"", "layered_resistance"}, "trt", 0.7, 1.5, 5.0, {32.0, 260.0},
-                    {0.0, -4e-5}, 6000, fluid_steps)
+    return free_run(domain, {"", "layered_resistance"}, CollisionOperator::Trt, 0.7, 1.5, 5.0,
+                    {32.0, 260.0}, {0.0, -4e-5}, 6000, fluid_steps)
         .velocity.back()
         .y();
   };

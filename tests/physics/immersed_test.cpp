@@ -47,7 +47,7 @@ TEST(Momentum, FluidPlusDiscsMinusWallsIsConstant) {
   for (const std::string& term : kTerms)
     for (const Side side : {Side::Wall, Side::Periodic}) {
       const Domain domain{50, 44, side, Side::Wall};
-      Fluid fluid(domain, {"trt", "none", false, term, {.tau = 0.7}});
+      Fluid fluid(domain, {.solid_term = term, .parameters = {.tau = 0.7}});
       std::vector<Body> discs{{1, {20.2, 30.1}, 6.0, {0.03, -0.04}, 0.002},
                               {2, {29.0, 25.0}, 4.0, {-0.02, 0.01}, -0.001},
                               {3, {1.0, 3.0}, 5.0, {0.0, 0.02}, 0.0}};
@@ -69,7 +69,7 @@ TEST(Momentum, FluidPlusDiscsMinusWallsIsConstant) {
 TEST(Symmetry, AMirroredSceneGivesMirroredLoads) {
   const Domain domain{48, 40, Side::Wall, Side::Wall};
   const auto run = [&](double sign) {
-    Fluid fluid(domain, {"trt", "none", false, "layered_resistance", {.tau = 0.8}});
+    Fluid fluid(domain, {.solid_term = "layered_resistance", .parameters = {.tau = 0.8}});
     Body disc{1, {24.0 + sign * 5.25, 18.5}, 5.5, {sign * 0.03, -0.02}, sign * 0.004};
     BodyLoad load;
     for (int s = 0; s < 40; ++s) {
@@ -114,7 +114,7 @@ FreeDisc settle(double density_ratio, int steps, bool inner_inertia) {
   coupling.inner_inertia = inner_inertia;
   const double tau = 0.5 + 3.0 * fluid_scene.viscosity * units.dt / (dx * dx);
   Fluid fluid({80, 160, Side::Wall, Side::Wall},
-              {"trt", "none", false, "layered_resistance", {.tau = tau}});
+              {.solid_term = "layered_resistance", .parameters = {.tau = tau}});
   Scene scene;
   scene.fluid = fluid_scene;
   scene.coupling = coupling;

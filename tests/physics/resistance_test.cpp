@@ -23,7 +23,8 @@ double parallel_plane(const std::string& lattice, double eps, double tau) {
   const bool flat = lattice == "D2Q9";
   const Domain domain = flat ? Domain{1, n, Side::Periodic, Side::Wall}
                              : Domain{1, n, Side::Periodic, Side::Wall, 1, Side::Periodic};
-  KernelChoice choice{"trt", "none", false, "resistance", {tau, kResistanceMagic}};
+  KernelChoice choice{.solid_term = "resistance",
+                      .parameters = {.tau = tau, .magic = kResistanceMagic}};
   choice.lattice = lattice;
   test::NaiveLattice fluid(domain, choice);
   const double shear = 1e-4, nu = (tau - 0.5) / 3.0, plane = whole + eps;
@@ -91,11 +92,13 @@ double between_plates(const Vec3& direction, int n, double thick, double offset)
   const double tau = 1.5, nu = (tau - 0.5) / 3.0, g = 1e-6;
   const double period = n / direction.norm(), gap = period - thick;
   const Domain domain{n, n, Side::Periodic, Side::Periodic, flat ? 1 : n, Side::Periodic};
-  KernelChoice choice{"trt",
-                      "none",
-                      true,
-                      "resistance",
-                      {tau, kResistanceMagic, 0.0, g * along.x(), g * along.y(), g * along.z()}};
+  KernelChoice choice{.force = true,
+                      .solid_term = "resistance",
+                      .parameters = {.tau = tau,
+                                     .magic = kResistanceMagic,
+                                     .force_x = g * along.x(),
+                                     .force_y = g * along.y(),
+                                     .force_z = g * along.z()}};
   choice.lattice = flat ? "D2Q9" : "D3Q19";
   Fluid fluid(domain, choice);
   fluid.add_wall({0, 0, 0}, {n, n, flat ? 1 : n});

@@ -31,7 +31,8 @@ double array_error(const Case& c, int n, double tau, const Vec3& place = {0.23, 
   const double nu = (tau - 0.5) / 3.0, r = n * std::sqrt(0.2 / std::numbers::pi);
   const double u = 0.01 * nu / (2.0 * r), drag = test::kDiscDrag.at(0.2),
                g = drag * nu * u / (n * n);
-  Fluid fluid = make(c, {n, n, Side::Periodic, Side::Periodic}, "trt", tau, {g, 0.0});
+  Fluid fluid =
+      make(c, {n, n, Side::Periodic, Side::Periodic}, CollisionOperator::Trt, tau, {g, 0.0});
   const Body disc{1, {0.5 * n + place.x(), 0.5 * n + place.y()}, r, {0.0, 0.0}, 0.0};
   const auto steps = static_cast<int>(0.3 * n * n / nu);  // twenty times the slowest decay
   Vec3 before(0.0, 0.0);
@@ -84,7 +85,7 @@ std::vector<Body> pair_of_discs() {
 
 TEST(Momentum, WhatTheFluidLosesTheBodiesGet) {
   for (const Case& c : kAll) {
-    Fluid fluid = make(c, {48, 44, Side::Periodic, Side::Periodic}, "trt", 0.7);
+    Fluid fluid = make(c, {48, 44, Side::Periodic, Side::Periodic}, CollisionOperator::Trt, 0.7);
     test::MomentumBalance balance(fluid, c.scheme);
     auto discs = pair_of_discs();
     for (int step = 0; step < 40; ++step) {
@@ -98,7 +99,7 @@ TEST(Order, OfTheBodiesPlaysNoPart) {
   for (const Case& c : kAll) {
     std::vector<std::vector<BodyLoad>> results;
     for (const bool reversed : {false, true}) {
-      Fluid fluid = make(c, {48, 44, Side::Periodic, Side::Wall}, "trt", 0.7);
+      Fluid fluid = make(c, {48, 44, Side::Periodic, Side::Wall}, CollisionOperator::Trt, 0.7);
       auto discs = pair_of_discs();
       // They overlap a little and share cells; bodies of the implicit scheme must stay apart.
       discs[1].centre.x() = c.scheme == "implicit_immersed_boundary" ? 22.0 : 13.7;
@@ -122,8 +123,8 @@ TEST(AddedMass, OfAnOscillatingDisc) {
   const double d = 20.0, beta = 200.0, nu = d * d / (beta * period);
   const double omega = 2.0 * std::numbers::pi / period, amplitude = 0.01 * d;
   const double mass = std::numbers::pi * d * d / 4.0;
-  Fluid fluid =
-      make({"", "layered_holdych"}, {n, n, Side::Periodic, Side::Periodic}, "trt", 0.5 + 3.0 * nu);
+  Fluid fluid = make({"", "layered_holdych"}, {n, n, Side::Periodic, Side::Periodic},
+                     CollisionOperator::Trt, 0.5 + 3.0 * nu);
   double in_phase = 0.0;
   Body disc{1, {0.5 * n, 0.5 * n + 0.3}, 0.5 * d, {0.0, 0.0}, 0.0};
   for (int s = 0; s < 2 * period; ++s) {
@@ -144,17 +145,19 @@ TEST(Galilean, DragInAMovingFrame) {
   // The array carried along with its fluid. Third-order equilibrium: 1 %; TRT's second-order one
   // has an error u² ∂u: 1.5 % at 0.05 C.
   const test::SlowArray array;
-  const auto drag = [&](const std::string& collision, const std::string& term, double carried) {
+  const auto drag = [&](CollisionOperator collision, const std::string& term, double carried) {
     const Domain domain{array.n, array.n, Side::Periodic, Side::Periodic};
     Fluid fluid = make({"", term}, domain, collision, array.tau, {array.g, 0.0});
     return array.drag(fluid, carried);
   };
-  const double still = drag("central_moment", "layered_noble_torczynski", 0.0);
+  const double still = drag(CollisionOperator::CentralMoment, "layered_noble_torczynski", 0.0);
   for (const double carried : {0.02, 0.05, 0.1})
-    EXPECT_NEAR(drag("central_moment", "layered_noble_torczynski", carried) / still, 1.0, 0.01)
+    EXPECT_NEAR(drag(CollisionOperator::CentralMoment, "layered_noble_torczynski", carried) / still,
+                1.0, 0.01)
         << carried;
-  EXPECT_NEAR(drag("trt", "layered_holdych", 0.05) / drag("trt", "layered_holdych", 0.0), 1.0,
-              0.015);
+  EXPECT_NEAR(drag(CollisionOperator::Trt, "layered_holdych", 0.05) /
+                  drag(CollisionOperator::Trt, "layered_holdych", 0.0),
+              1.0, 0.015);
 }
 
 TEST(SpringScheme, RemembersItsStretchInACheckpoint) {
@@ -167,11 +170,11 @@ TEST(SpringScheme, RemembersItsStretchInACheckpoint) {
       fluid.step();
     }
   };
-  Fluid one = make(c, domain, "trt", 0.8, {1e-6, 0.0});
+  Fluid one = make(c, domain, CollisionOperator::Trt, 0.8, {1e-6, 0.0});
   run(one, 50);
   const auto state = one.save();
   run(one, 50);
-  Fluid two = make(c, domain, "trt", 0.8, {1e-6, 0.0});
+  Fluid two = make(c, domain, CollisionOperator::Trt, 0.8, {1e-6, 0.0});
   two.place(discs);
   two.load(state);
   run(two, 50);

@@ -16,7 +16,7 @@ namespace {
 using namespace lbm;
 using std::numbers::pi;
 
-KernelChoice kernel(const std::string& collision, const std::string& lattice, double tau) {
+KernelChoice kernel(CollisionOperator collision, const std::string& lattice, double tau) {
   KernelChoice choice;
   choice.collision = collision;
   choice.lattice = lattice;
@@ -45,7 +45,7 @@ int turned_direction(const Lattice& l, int q, const Turn& t) {
   return -1;
 }
 
-class TurnTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+class TurnTest : public testing::TestWithParam<std::tuple<std::string, CollisionOperator>> {};
 
 TEST_P(TurnTest, ATurnedOrMirroredStateGivesTheTurnedResult) {
   const auto& [lattice, collision] = GetParam();
@@ -85,7 +85,7 @@ TEST_P(TurnTest, ATurnedOrMirroredStateGivesTheTurnedResult) {
                                       b.arriving(turned_direction(l, q, t), to[0], to[1], to[2])));
       });
       // deviations of 1e-3 have a round-off of 1e-19; central moments rebuild whole populations
-      EXPECT_LT(largest, collision == "central_moment" ? 1e-15 : 3e-17);
+      EXPECT_LT(largest, collision == CollisionOperator::CentralMoment ? 1e-15 : 3e-17);
     }
 }
 
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Operators, TurnTest,
                          testing::Combine(testing::Values("D3Q19", "D3Q27"),
                                           testing::ValuesIn(known_collisions())),
                          [](const auto& info) {
-                           return std::get<0>(info.param) + "_" + std::get<1>(info.param);
+                           return std::get<0>(info.param) + "_" + name_of(std::get<1>(info.param));
                          });
 
 TEST(Channel, IsAParabolaToRoundOffAlongEachAxis) {
@@ -103,7 +103,7 @@ TEST(Channel, IsAParabolaToRoundOffAlongEachAxis) {
       Cell3 cells{5, 5, 5};
       cells[across] = n;
       const auto side = [&](int a) { return a == across ? Side::Wall : Side::Periodic; };
-      KernelChoice choice = kernel("trt", lattice, 0.9);
+      KernelChoice choice = kernel(CollisionOperator::Trt, lattice, 0.9);
       const double nu = (0.9 - 0.5) / 3.0, g = 8.0 * nu * 0.01 / (n * n);
       choice.force = true;
       auto& p = choice.parameters;
@@ -123,7 +123,7 @@ TEST(Spheres, GiveTheFluidWhatTheyLose) {
   // In a periodic box the momentum that the fluid gains is what the spheres lose, to round-off; two
   // of them share cells, one lies across the corner.
   const Domain box{24, 22, Side::Periodic, Side::Periodic, 20, Side::Periodic};
-  KernelChoice choice = kernel("trt", "D3Q19", 0.8);
+  KernelChoice choice = kernel(CollisionOperator::Trt, "D3Q19", 0.8);
   choice.solid_term = "layered_resistance";
   Fluid fluid(box, choice);
   std::vector<Body> bodies{{1, {0.3, 0.2, 19.8}, 4.0, {0.02, -0.01, 0.01}, {0.001, 0.002, -0.001}},
@@ -157,7 +157,7 @@ TEST(Spheres, FeelTheTorqueOfStokes) {
   const double radius = 5.0, tau = 0.8, nu = (tau - 0.5) / 3.0;
   const double fraction = 4.0 / 3.0 * pi * radius * radius * radius / (n * n * n);
   for (const Vec3& axis : {Vec3(0.0, 0.0, 1.0), Vec3(0.6, -0.48, 0.64)}) {
-    KernelChoice choice = kernel("trt", "D3Q19", tau);
+    KernelChoice choice = kernel(CollisionOperator::Trt, "D3Q19", tau);
     choice.solid_term = "layered_resistance";
     choice.parameters.magic = kResistanceMagic;
     Fluid fluid({n, n, Side::Periodic, Side::Periodic, n, Side::Periodic}, choice);
@@ -194,7 +194,7 @@ TEST(Spheres, FeelTheLubricationOfAWall) {
   const double radius = 6.0, tau = 0.8, nu = (tau - 0.5) / 3.0, speed = 1e-4;
   const Domain box{56, 44, Side::Periodic, Side::Wall, 56, Side::Periodic};
   for (const auto& [gap, lattice_alone] : {std::pair(0.25, 0.62), std::pair(3.0, 1.0)}) {
-    KernelChoice choice = kernel("trt", "D3Q19", tau);
+    KernelChoice choice = kernel(CollisionOperator::Trt, "D3Q19", tau);
     choice.solid_term = "layered_resistance";
     choice.parameters.magic = kResistanceMagic;
     Fluid fluid(box, choice);
@@ -214,7 +214,7 @@ TEST(SinglePrecision, LosesNoMassAndStaysNearDouble) {
   const Domain box{20, 18, Side::Wall, Side::Wall, 16, Side::Wall};
   double speed[2];
   for (const Precision precision : {Precision::Double, Precision::Single}) {
-    KernelChoice choice = kernel("trt", "D3Q19", 0.6);
+    KernelChoice choice = kernel(CollisionOperator::Trt, "D3Q19", 0.6);
     choice.precision = precision;
     Fluid fluid(box, choice);
     const Opening top = Opening::whole(box, SideName::Top);

@@ -131,7 +131,7 @@ std::vector<Cell3> grids(const Domain& d) {
 }
 
 KernelChoice choice_for(const std::string& lattice, Precision precision) {
-  return {.collision = "trt",
+  return {.collision = CollisionOperator::Trt,
           .solid_term = "layered_resistance",
           .parameters = {.tau = 0.7},
           .lattice = lattice,

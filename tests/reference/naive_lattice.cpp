@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "lbm_solver/immersed/solid_term.h"
+#include "lbm_solver/viscosity/relaxation_table.h"
 
 namespace test {
 
+using lbm::CollisionOperator;
 using lbm::opposite;
 using lbm::Side;
 using Cell = NaiveLattice::Cell;
@@ -172,12 +174,17 @@ Cell NaiveLattice::recursive_regularised(double rho, const Vec3& u, const Eigen:
   return out;
 }
 
-double NaiveLattice::tau(const Cell& f) const {
+double NaiveLattice::tau(const Cell& f, double part) const {
   const auto& p = choice_.parameters;
-  if (choice_.turbulence != "smagorinsky") return p.tau;
+  if (!choice_.local_viscosity()) return p.tau;
   const Macroscopic m = macroscopic(f);
   const Vec3 u = (m.j + 0.5 * body_force()) / m.rho;
-  const Eigen::Matrix3d q = stress(f, equilibrium(m.rho, u), u);
+  Eigen::Matrix3d q = stress(f, equilibrium(m.rho, u), u);
+  if (p.viscosity_table) {
+    q.topLeftCorner(l_.D, l_.D).diagonal().array() -= q.trace() / l_.D;
+    const double rho = part == 1.0 ? m.rho : m.rho * std::pow(0.05 + 0.95 * part, 2);
+    return 1.0 / (*p.viscosity_table)(2.0 * q.squaredNorm() / (rho * rho));
+  }
   return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + 18.0 * p.smagorinsky * p.smagorinsky *
                                                       std::sqrt(2.0) * q.norm() / m.rho));
 }
@@ -188,10 +195,12 @@ Cell NaiveLattice::fluid(const Cell& f) const {
   const Vec3 u = (m.j + 0.5 * body_force()) / m.rho;
   const Cell eq = equilibrium(m.rho, u), s = choice_.force ? source(u) : Cell{};
   const double tau = this->tau(f);
-  if (choice_.collision == "central_moment") return central_moments(f, m.rho, u, 1.0 / tau);
-  if (choice_.collision == "recursive_regularised")
+  if (choice_.collision == CollisionOperator::CentralMoment)
+    return central_moments(f, m.rho, u, 1.0 / tau);
+  if (choice_.collision == CollisionOperator::RecursiveRegularised)
     return recursive_regularised(m.rho, u, stress(f, eq, u), s, 1.0 / tau);
-  const double odd_tau = choice_.collision == "bgk" ? tau : p.magic / (tau - 0.5) + 0.5;
+  const double odd_tau =
+      choice_.collision == CollisionOperator::Bgk ? tau : p.magic / (tau - 0.5) + 0.5;
   Cell out{};
   for (int i = 0; i < l_.Q; ++i) {
     const int o = opposite(i);
@@ -210,7 +219,8 @@ Cell NaiveLattice::resistance(std::size_t cell) {
   const auto& p = choice_.parameters;
   const Macroscopic m = macroscopic(f);
   const NaiveCover& cover = cover_[cell];
-  const double s = tau(f) - 0.5, t = 1.0 - cover.eps, mu = (2.0 - 16.0 / 3 * p.magic) * t * t * t;
+  const double t = 1.0 - cover.eps, tau = this->tau(f, t), s = tau - 0.5,
+               mu = (2.0 - 16.0 / 3 * p.magic) * t * t * t;
   double share = 0.0;  // of momentum that populations along the axes carry
   for (int i = 1; i < l_.Q; ++i)
     if (c(i).squaredNorm() == 1.0) share += 3.0 * l_.w[i] * c(i).x() * c(i).x();
@@ -227,7 +237,7 @@ Cell NaiveLattice::resistance(std::size_t cell) {
         0.375 * (t - 0.5 * mu);
     exchange = (0.5 * Eigen::Matrix2d::Identity() + n / s).inverse();
     others = 1.0 / (0.5 + n(1, 1) / s);
-    even_rate = 1.0 / tau(f);
+    even_rate = 1.0 / tau;
   } else if (!cover.wall && choice_.solid_term == "layered_resistance") {
     const double shell = std::max(1.0, 1.0 / (0.5 + 0.005 / (p.tau - 0.5)));
     others = cover.core ? 1.0 : 2.0;
@@ -269,8 +279,8 @@ Cell NaiveLattice::collided(std::size_t cell) {
   const Cell post = fluid(f);
   double weight = cover.eps;
   if (choice_.weight != lbm::WeightRule::Fraction) {
-    const bool les = choice_.turbulence == "smagorinsky";
-    const double s = (les ? tau(f) : choice_.parameters.tau) - 0.5;
+    const bool les = choice_.local_viscosity();
+    const double s = (les ? tau(f, 1.0 - cover.eps) : choice_.parameters.tau) - 0.5;
     const double c = choice_.weight == lbm::WeightRule::Balanced ? 1.0 - 0.5 * s : 1.0;
     weight = cover.eps * s / ((1.0 - cover.eps) * c + s);
   }

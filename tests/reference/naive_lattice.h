@@ -60,8 +60,8 @@ class NaiveLattice {
   Cell collided(std::size_t cell);
   /// Post-collision populations of pure fluid.
   Cell fluid(const Cell& f) const;
-  /// Relaxation time with the eddy viscosity.
-  double tau(const Cell& f) const;
+  /// Relaxation time of the local viscosity. @param part  of the cell that is fluid, for a table
+  double tau(const Cell& f, double part = 1.0) const;
   Cell resistance(std::size_t cell);
   Cell solid_term(const Cell& f, const Cell& eq_fluid, double rho, const NaiveCover& c) const;
 

@@ -20,17 +20,15 @@ using namespace lbm;
 /// A fluid at rest with TRT and a solid term. @param g  body force on a cell
 inline Fluid slow_fluid(const std::string& term, const Domain& domain, double tau, const Vec3& g) {
   const bool flat = domain.dimension() == 2;
-  KernelChoice choice{"trt",
-                      "none",
-                      g.norm() > 0.0,
-                      term,
-                      {.tau = tau,
-                       .magic = by_resistance(term) ? kResistanceMagic : 3.0 / 16.0,
-                       .force_x = g.x(),
-                       .force_y = g.y(),
-                       .force_z = g.z()},
-                      flat ? WeightRule::Viscous : WeightRule::Balanced,
-                      flat ? "D2Q9" : "D3Q19"};
+  KernelChoice choice{.force = g.norm() > 0.0,
+                      .solid_term = term,
+                      .parameters = {.tau = tau,
+                                     .magic = by_resistance(term) ? kResistanceMagic : 3.0 / 16.0,
+                                     .force_x = g.x(),
+                                     .force_y = g.y(),
+                                     .force_z = g.z()},
+                      .weight = flat ? WeightRule::Viscous : WeightRule::Balanced,
+                      .lattice = flat ? "D2Q9" : "D3Q19"};
   Fluid fluid(domain, choice);
   for (int z = 0; z < domain.nz; ++z)
     for (int y = 0; y < domain.ny; ++y)

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* leaving_solid STAGE HOW: a solid in C that leaves at a stage (connected, agreed, states, running, last,
- * goodbye, refused) by MPI_Finalize only (finalize), by exit, with bplbm_close (farewell), or after bplbm_fail (fail). */
+ * goodbye, refused) by MPI_Finalize only (finalize), by exit, with bplbm_close (farewell), or after bplbm_fail (fail).
+ * leaving_solid slow SECONDS: one whose rank r looks for the fluid only r times as long after MPI_Init, and stays. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "bplbm_solid.h"
 
@@ -28,9 +30,16 @@ int main(int argc, char** argv) {
   bplbm_shape shape = {.id = 4, .radius = 0.00125, .type = 1, .carrier = BPLBM_ITSELF};
   bplbm_load load;
   uint32_t asked = 0;
+  int rank = 0;
   stage = argc > 1 ? argv[1] : "";
   how = argc > 2 ? argv[2] : "";
+  if (!strcmp(stage, "slow")) {
+    MPI_Init(&argc, &argv);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    sleep((unsigned)(rank * atoi(how)));
+  }
   if (bplbm_connect(&wire, "leaving_solid", "test") != BPLBM_OK) return bplbm_close(wire);
+  MPI_Comm_rank(bplbm_communicator(wire), &rank);
   leave_at("connected");
   shape.mass = 1250.0 * acos(-1.0) * shape.radius * shape.radius;
   shape.inertia = 0.5 * shape.mass * shape.radius * shape.radius;
@@ -47,7 +56,7 @@ int main(int argc, char** argv) {
       bplbm_goodbye(wire, "has seen enough");
       leave_at("goodbye");
     }
-    bplbm_send(wire, 1, &state, &shape);
+    bplbm_send(wire, rank == 0 ? 1 : 0, &state, &shape);
     if (k == 0) leave_at("states");
     if (bplbm_receive(wire, &load, &asked) != BPLBM_OK) return bplbm_close(wire);
     if (asked & BPLBM_LAST) break;

@@ -21,17 +21,17 @@ struct Case {
   std::string name() const { return scheme.empty() ? term : scheme; }
 };
 
-inline Fluid make(const Case& c, const Domain& domain, const std::string& collision, double tau,
+inline Fluid make(const Case& c, const Domain& domain, CollisionOperator collision, double tau,
                   const Vec3& force = Vec3()) {
-  Fluid fluid(domain, {collision,
-                       "none",
-                       force.norm() > 0.0,
-                       c.term,
-                       {.tau = tau,
-                        .magic = by_resistance(c.term) ? kResistanceMagic : 3.0 / 16.0,
-                        .force_x = force.x(),
-                        .force_y = force.y()}});
-  if (!c.scheme.empty()) fluid.use(make_scheme(c.scheme, domain, fluid.lattice()));
+  Fluid fluid(domain,
+              {.collision = collision,
+               .force = force.norm() > 0.0,
+               .solid_term = c.term,
+               .parameters = {.tau = tau,
+                              .magic = by_resistance(c.term) ? kResistanceMagic : 3.0 / 16.0,
+                              .force_x = force.x(),
+                              .force_y = force.y()}});
+  if (!c.scheme.empty()) fluid.use(make_scheme(solid_scheme(c.scheme), domain, fluid.lattice()));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;

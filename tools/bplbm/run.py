@@ -15,6 +15,7 @@ import sys
 import time
 
 from bplbm import output_folder, solid_alone
+from bplbm.logs import warning_lines
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
 from bplbm.project import BIN, INSTALLED, TOOLS, missing_cpu_features, tool
@@ -85,6 +86,9 @@ def run_alone(args, out):
     code = start(solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks, out)
     if code == 0:
         solid_alone.write_summary(out, args.scene.name, args.set, label(args), found, time.monotonic() - begin)
+        add_warnings(out)
+        for _, line in warning_lines(out):
+            print(f"run | warning | liggghts: {line}", file=sys.stderr)
     elif said := solid_alone.error_in(out / "liggghts.log"):
         print(f"run | error | liggghts: {said}", file=sys.stderr)
     return code
@@ -97,6 +101,7 @@ def run_job(args, out):
     code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks, out)
     if code == 0:
         add_solid_waiting(out)
+        add_warnings(out)
     return code
 
 
@@ -131,6 +136,14 @@ def add_solid_waiting(out):
     path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
     print(f"run | waiting: the fluid {summary['waiting']:.3g} s for the solid, the solid {summary['solid_waiting']:.3g} s for "
           f"the fluid, of {summary['wall_seconds']:.3g} s")
+
+
+def add_warnings(out):
+    """Adds to summary.json what the logs warn of."""
+    path = out / "summary.json"
+    summary = json.loads(path.read_text())
+    summary["warnings"] = [f"{log}: {line}" for log, line in warning_lines(out)]
+    path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
 
 
 def draw(scene, out, until):

@@ -14,7 +14,7 @@ from mpi4py import MPI
 from . import frames
 from .errors import BAD_INPUT, FluidFault, FluidLeft, SolidError, TimedOut
 
-FRAME_TAG, URGENT_TAG, ROLE_TAG, LEADER_TAG = 7001, 7002, 7003, 7004
+FRAME_TAG, URGENT_TAG, ROLE_TAG, LEADER_TAG, PATIENCE_TAG = 7001, 7002, 7003, 7004, 7005
 ON_ITS_WAY = 1.0   # a frame that was sent before a farewell [s]
 GRACE = 0.6        # after a signal, in which the fluid may still answer [s]
 BUSY_TURNS = 200   # of a wait, before the core is offered to others
@@ -86,14 +86,28 @@ class Channel:
         roles, mine = np.zeros(world.size, "u4"), np.array([frames.SOLID], "u4")
         receives = [world.Irecv(roles[i:i + 1], i, ROLE_TAG) for i in range(world.size)]
         sends = [world.Isend(mine, i, ROLE_TAG) for i in range(world.size)]
-        if not self._poll(seconds, lambda: MPI.Request.Testall(receives + sends)):
+        begin = time.monotonic()
+        while not self._poll(0.1, lambda: MPI.Request.Testall(receives + sends)):
+            seconds = max(seconds, self._told_patience(world))
+            if time.monotonic() - begin < seconds:
+                continue
             silent = [i for i, request in enumerate(receives) if not request.Test()]
             raise TimedOut(f"rank(s) {', '.join(map(str, silent))} of this MPI job did not say within {seconds:.3g} s what "
-                           "they are; is each 'lbm' or a solid of its protocol? (BPLBM_CONNECT_TIMEOUT)")
+                           "they are; is each 'lbm' or a solid of its protocol? Who needs longer to start is waited for with "
+                           "coupling.connect_timeout = SECONDS in the scene, or BPLBM_CONNECT_TIMEOUT in the environment")
         if (roles == frames.SOLID).all():
             raise SolidError("no fluid program was started beside it; start: mpirun -np 1 lbm scene.toml : -np 1 "
                              "python3 FILE", BAD_INPUT)
         return roles
+
+    @staticmethod
+    def _told_patience(world: "MPI.Intracomm") -> float:
+        """How long the fluid's scene wants everybody to be waited for [s]; 0 where it has not said so yet."""
+        seconds, told, status = 0.0, np.zeros(1), MPI.Status()
+        while world.Iprobe(MPI.ANY_SOURCE, PATIENCE_TAG, status):
+            world.Recv(told, status.source, PATIENCE_TAG)
+            seconds = max(seconds, told[0])
+        return seconds
 
     # ---- frames ----------------------------------------------------------------------------------------------------
 

@@ -10,8 +10,8 @@ namespace {
 
 using namespace lbm;
 
-KernelChoice kernel(const std::string& collision, const std::string& solid_term = "none") {
-  return {collision, "none", false, solid_term, {.tau = 0.7}};
+KernelChoice kernel(CollisionOperator collision, const std::string& solid_term = "none") {
+  return {.collision = collision, .solid_term = solid_term, .parameters = {.tau = 0.7}};
 }
 
 TEST(SideLinks, ASlotKeepsItsEdgesNoSlip) {
@@ -45,7 +45,7 @@ double mass(Fluid& fluid) {
 }
 
 TEST(Ledger, MassOfAnOpenBoxIsAccountedForToRoundOff) {
-  Fluid fluid({40, 24, Side::Wall, Side::Wall}, kernel("trt"));
+  Fluid fluid({40, 24, Side::Wall, Side::Wall}, kernel(CollisionOperator::Trt));
   test::add_velocity(fluid, test::part(SideName::Left, 4, 20), {0.05, 0.0}, true, {50.0, 0.0});
   test::add_pressure(fluid, test::part(SideName::Right, 0, 12), 0.002);
   test::add_outflow(fluid, test::part(SideName::Right, 12, 24), 0.0, 0.01);
@@ -55,7 +55,7 @@ TEST(Ledger, MassOfAnOpenBoxIsAccountedForToRoundOff) {
 }
 
 TEST(Ledger, APressureJumpMakesNoMass) {
-  Fluid fluid({24, 16, Side::Periodic, Side::Wall}, kernel("trt"));
+  Fluid fluid({24, 16, Side::Periodic, Side::Wall}, kernel(CollisionOperator::Trt));
   for (const SideName side : {SideName::Left, SideName::Right})
     fluid.add(std::make_unique<PressureJumpPatch>(fluid.links(test::part(side, 0, 16)), side,
                                                   side == SideName::Left ? 1e-3 : -1e-3, InTime{}));
@@ -79,16 +79,16 @@ Image image(Turn turn, int x, int y, int q, int nx, int ny) {
   return turn == Turn::Quarter ? Image{ny - 1 - y, x, to} : Image{nx - 1 - x, y, to};
 }
 
-class SymmetryTest : public testing::TestWithParam<std::string> {};
+class SymmetryTest : public testing::TestWithParam<CollisionOperator> {};
 
 TEST_P(SymmetryTest, ATurnedOrMirroredStateGivesTheTurnedResult) {
   const int nx = 21, ny = 14;
   for (const Side side : {Side::Periodic, Side::Wall})
     for (const Turn turn : {Turn::Quarter, Turn::Mirror})
-      for (const char* turbulence : {"none", "smagorinsky"}) {
+      for (const double smagorinsky : {0.0, 0.1}) {
         const bool quarter = turn == Turn::Quarter;
-        KernelChoice choice{
-            GetParam(), turbulence, false, "none", {.tau = 0.55, .smagorinsky = 0.1}};
+        KernelChoice choice{.collision = GetParam(),
+                            .parameters = {.tau = 0.55, .smagorinsky = smagorinsky}};
         Fluid a({nx, ny, side, side}, choice);
         Fluid b({quarter ? ny : nx, quarter ? nx : ny, side, side}, choice);
         std::mt19937 random(7);
@@ -113,7 +113,7 @@ TEST_P(SymmetryTest, ATurnedOrMirroredStateGivesTheTurnedResult) {
         each([&](double p, double q) { largest = std::max(largest, std::abs(p - q)); });
         // deviations of 1e-3 have a round-off of 1e-19; central moments rebuild whole populations,
         // up to 4/9, in sums of some ten terms
-        EXPECT_LT(largest, GetParam() == "central_moment" ? 1e-15 : 1e-17);
+        EXPECT_LT(largest, GetParam() == CollisionOperator::CentralMoment ? 1e-15 : 1e-17);
       }
 }
 INSTANTIATE_TEST_SUITE_P(Operators, SymmetryTest, testing::ValuesIn(known_collisions()));
@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(Operators, SymmetryTest, testing::ValuesIn(known_collis
 TEST(Blocks, AreWallsHalfWayBetweenTheCells) {
   // two rows of block at the bottom of a box make a box that is two rows lower
   const int nx = 13, ny = 12;
-  KernelChoice plain{"trt", "none", true, "none", {.tau = 0.8, .force_x = 1e-5}}, with = plain;
+  KernelChoice plain{.force = true, .parameters = {.tau = 0.8, .force_x = 1e-5}}, with = plain;
   with.solid_term = "layered_holdych";
   Fluid small({nx, ny, Side::Periodic, Side::Wall}, plain);
   Fluid large({nx, ny + 2, Side::Periodic, Side::Wall}, with);

@@ -110,16 +110,16 @@ TEST(Plan, AutoTakesTheOperatorThatSuitsAndSaysWhy) {
   Scene s = settling_disc();
   s.numerics.collision = s.numerics.solid_term = "auto";
   Plan p = make_plan(s);
-  EXPECT_EQ(p.kernel.collision, "trt");
+  EXPECT_EQ(p.kernel.collision, CollisionOperator::Trt);
   EXPECT_EQ(p.kernel.solid_term, "layered_resistance");
   s.fluid.viscosity = 1e-6;  // Re_h = 7.5
   p = make_plan(s);
-  EXPECT_EQ(p.kernel.collision, "central_moment");
+  EXPECT_EQ(p.kernel.collision, CollisionOperator::CentralMoment);
   EXPECT_EQ(p.kernel.solid_term, "layered_noble_torczynski");
   EXPECT_NE(p.collision_reason.find("Re_h = 7.5"), std::string::npos) << p.collision_reason;
   s.fluid.viscosity = 1e-5;
   s.numerics.smagorinsky = 0.1;
-  EXPECT_EQ(make_plan(s).kernel.collision, "central_moment");
+  EXPECT_EQ(make_plan(s).kernel.collision, CollisionOperator::CentralMoment);
   s.numerics.collision = "trt";
   EXPECT_NE(make_plan(s).warnings.back().find("turbulence"), std::string::npos);
 }

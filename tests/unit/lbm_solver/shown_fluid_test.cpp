@@ -15,8 +15,11 @@ using namespace lbm;
 
 constexpr double kForce = 1e-5;
 
-KernelChoice choice(const std::string& term, const std::string& collision = "trt") {
-  return {collision, "none", true, term, {.tau = 0.8, .force_x = kForce}};
+KernelChoice choice(const std::string& term, CollisionOperator collision = CollisionOperator::Trt) {
+  return {.collision = collision,
+          .force = true,
+          .solid_term = term,
+          .parameters = {.tau = 0.8, .force_x = kForce}};
 }
 
 /// What every cell of a box shows.
@@ -179,11 +182,12 @@ TEST(ShownFluid, WallsRest) {
 // density outside after 8000 steps.)
 TEST(ShownFluid, DensityInSolidsDoesNotDrift) {
   for (const std::string term : {"layered_noble_torczynski", "layered_holdych", "noble_torczynski"})
-    for (const std::string collision : {"central_moment", "trt"}) {
+    for (const auto collision : {CollisionOperator::CentralMoment, CollisionOperator::Trt}) {
       const Domain domain{40, 40};
-      const double tau = collision == "trt" ? 0.6 : 0.50003;
-      Fluid fluid(domain,
-                  {collision, "smagorinsky", false, term, {.tau = tau, .smagorinsky = 0.1}});
+      const double tau = collision == CollisionOperator::Trt ? 0.6 : 0.50003;
+      Fluid fluid(domain, {.collision = collision,
+                           .solid_term = term,
+                           .parameters = {.tau = tau, .smagorinsky = 0.1}});
       const Opening bottom = Opening::whole(domain, SideName::Bottom);
       test::add_pressure(fluid, bottom, 0.0);
       test::add_pressure(fluid, test::part(SideName::Top, 14, 26), -0.009, {1000.0, 0.0});
@@ -241,7 +245,7 @@ TEST(ShownFluid, SchemesOfTheirOwnShowTheBodyWhereItCoversCellsWhole) {
   const Box& box = kBoxes[0];
   for (const std::string scheme : {"bounce_back", "implicit_immersed_boundary"}) {
     Fluid fluid(box.domain, choice("none"));
-    fluid.use(make_scheme(scheme, box.domain, fluid.lattice()));
+    fluid.use(make_scheme(solid_scheme(scheme), box.domain, fluid.lattice()));
     Body body = box.body;
     body.velocity = {0.001, 0.0};
     for (int step = 0; step < 20; ++step) {

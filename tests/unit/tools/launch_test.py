@@ -168,7 +168,10 @@ class SolidAlone(unittest.TestCase):
                                  ({"box": {"size": 1.0}}, "must be two or three lengths"),
                                  ({"particles": {"density": float("nan")}}, "particles.density = nan"),
                                  ({"particles": {"variables": {"x_lo": 1}}}, "gives this variable already"),
-                                 ({"particles": {"variables": {"a": [1]}}}, "a word with a number or a text")):
+                                 ({"particles": {"variables": {"scene_folder": "x"}}}, "gives this variable already"),
+                                 ({"particles": {"variables": {"a": [1]}}}, "a number or one word"),
+                                 ({"particles": {"variables": {"a": 'x" && "1'}}}, "a number or one word"),
+                                 ({"particles": {"variables": {"a": "../../tmp/evil"}}}, "no path out of")):
             with self.assertRaises(solid_alone.Mistake) as caught:
                 solid_alone.variables(self.changed(**tables))
             self.assertIn(expected, str(caught.exception))

@@ -18,8 +18,6 @@ def room(path):
     if parts[0] == "protocol" and len(parts) > 2:
         return "protocol/replay, trace" if path.endswith("_main.cpp") else f"protocol/{parts[1]}"
     if parts[0] == "lbm_solver":
-        if parts[1] in ("collision", "turbulence"):  # operators and eddy viscosity know each other
-            return "lbm_solver/collision, turbulence"
         return f"lbm_solver/{parts[1]}" if len(parts) > 2 else "lbm_solver/main"
     if parts[0] == "liggghts_coupling" and len(parts) > 2:
         return f"liggghts_coupling/{parts[1]}"

@@ -11,12 +11,12 @@ INCLUDE = re.compile(r'^\s*#include\s+[<"]([^>"]+)[>"]', re.M)
 # Room -> rooms whose headers it may use besides its own and protocol's messages and errors.
 LBM = {
     "base": set(), "lattice": set(), "field": {"base", "lattice"},
-    "turbulence": {"collision"},
-    "collision": {"base", "lattice", "turbulence"},
+    "collision": {"base", "lattice"},
+    "viscosity": {"base", "lattice", "collision"},
     "boundary": {"base", "lattice", "field", "collision"},
     "immersed": {"base", "lattice", "field", "collision"},
     "io": {"base", "field"},
-    "solver": {"base", "lattice", "field", "collision", "turbulence", "boundary", "immersed"},
+    "solver": {"base", "lattice", "field", "collision", "viscosity", "boundary", "immersed"},
     "coupling": {"base", "lattice", "field", "collision", "boundary", "immersed", "solver", "io"},
     "main.cpp": {"base", "lattice", "field", "collision", "immersed", "solver", "io", "coupling"},
 }

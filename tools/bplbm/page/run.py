@@ -10,6 +10,7 @@ import subprocess
 import time
 
 from bplbm.costs import solid_seconds
+from bplbm.logs import warning_lines
 from bplbm.page import flow, histories
 from bplbm.page.html import Cell, page, section, table
 from bplbm.page.picture import data_url
@@ -79,12 +80,7 @@ def said(run):
 
 def warnings(run):
     """Lines of both logs that warn or advise, each once."""
-    lines = []
-    for log in sorted(run.folder.glob("*.log")):
-        for line in log.read_text(errors="replace").splitlines():
-            if re.search(r"\bwarning\b|^hint\b", line, re.I):
-                lines.append((log.name, re.sub(r"\s+", " ", line.strip())))
-    rows = [[name, line] for name, line in dict.fromkeys(lines)]
+    rows = [[name, line] for name, line in warning_lines(run.folder)]
     return table(["log", "line"], rows) if rows else '<p class="soft">None in either log.</p>'
 
 

@@ -97,7 +97,18 @@ static void add(Solid* s, const bplbm_state* state) {
   ++s->n;
 }
 
-/* Puts the particles of an interval into the box: particle1_x, …; those without particle1_interval at the beginning. */
+static void take_out(Solid* s, int64_t id) {
+  for (int64_t i = 0; i < s->n; ++i)
+    if (s->states[i].id == id) {
+      --s->n;
+      memmove(s->states + i, s->states + i + 1, sizeof *s->states * (size_t)(s->n - i));
+      memmove(s->shapes + i, s->shapes + i + 1, sizeof *s->shapes * (size_t)(s->n - i));
+      return;
+    }
+}
+
+/* Puts the particles of an interval into the box: particle1_x, …; those without particle1_interval at the beginning.
+   Takes out those whose particle1_until it is. */
 static void insert(Solid* s, int64_t interval) {
   static const char axes[] = "xyz";
   char name[40];
@@ -105,6 +116,8 @@ static void insert(Solid* s, int64_t interval) {
     bplbm_state state = {.id = i};
     snprintf(name, sizeof name, "particle%lld_x", (long long)i);
     if (!bplbm_variable(s->wire, name)) return;
+    snprintf(name, sizeof name, "particle%lld_until", (long long)i);
+    if ((int64_t)number_or(s, name, -1.0) == interval) take_out(s, i);
     snprintf(name, sizeof name, "particle%lld_interval", (long long)i);
     if ((int64_t)number_or(s, name, 0.0) != interval) continue;
     for (int k = 0; k < s->dimension; ++k) {

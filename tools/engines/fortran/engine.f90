@@ -81,6 +81,10 @@ contains
     do i = 1, huge(1) - 1
       write (name, "(a, i0, a)") "particle", i, "_"
       if (.not. bplbm_has(wire, trim(name) // "x")) return
+      if (int(number(trim(name) // "until", -1.0_c_double), c_int64_t) == interval) then  ! it is taken out
+        shapes = pack(shapes, states%id /= i)
+        states = pack(states, states%id /= i)
+      end if
       if (int(number(trim(name) // "interval", 0.0_c_double), c_int64_t) /= interval) cycle
       state = bplbm_state(id=i)
       do k = 1, dims

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""A solid program to copy: equal discs or spheres under gravity, springs and dashpots F_n = k δ - γ v_n, and the fluid's loads.
+"""A solid program to copy: equal discs or spheres under gravity and the fluid's loads, with springs and dashpots,
+F_n = k δ - γ v_n.
 
     mpirun -np 1 lbm scene.toml : -np 1 python3 engine.py
 
-Put your own particles in place of these. Everything comes from the variables that the fluid offers. On several ranks each
-moves all particles, and speaks for its share of them.
+Put your own particles in place of these. Everything comes from the variables that the fluid offers. On several ranks
+each moves all particles, and speaks for its share of them.
 """
 
 import math

@@ -4,8 +4,9 @@
     mpirun -np 1 lbm scene.toml : -np 1 /usr/bin/python3 tools/engines/yade/engine.py
     tools/run SCENE --engine yade
 
-It imports YADE as a module. (`yade -x engine.py` under mpirun would end in collective calls of YADE's own over all ranks of
-the job, the fluid's included, and takes the script's arguments for its own.) Laws and variables: README.md of this folder.
+It imports YADE as a module. (`yade -x engine.py` under mpirun would end in collective calls of YADE's own over all
+ranks of the job, the fluid's included, and takes the script's arguments for its own.) Laws and variables: README.md of
+this folder.
 """
 
 import math
@@ -22,7 +23,7 @@ import bplbm_solid  # noqa: E402
 
 def import_yade():
     """Debian's YADE is no module that Python finds. @throws SolidError"""
-    os.environ.setdefault("OMP_NUM_THREADS", "1")  # or else each step waits for as many threads as the machine has cores
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # or each step waits for as many threads as there are cores
     prefix = pathlib.Path(os.environ.get("YADE_PREFIX", "/usr"))
     for found in sorted(prefix.glob("lib*/**/yade*/py/yade/__init__.py")):
         sys.path.insert(1, str(found.parents[1]))
@@ -120,8 +121,8 @@ class Grains:
         self.O.forces.setPermF(self.bodies[number], tuple(force))
         self.O.forces.setPermT(self.bodies[number], tuple(torque))
 
-    # YADE's velocities are those of half a step before. Its scheme is velocity Verlet all the same: an exchange adds the
-    # half-step of the forces that acted (contacts of now, the load of before), and takes that of the new load away again.
+    # YADE's velocities are those of half a step before. Its scheme is velocity Verlet all the same: an exchange adds
+    # the half-step of the forces that acted (contacts of now, the load of before), and takes that of the new load away.
 
     def _half_steps(self, number):
         """What half a step of all that acts now adds to velocity and angular velocity."""
@@ -161,7 +162,7 @@ class Grains:
             self._apply(number)
 
     def memory(self):
-        """What the states lack for going on to the bit: YADE's own velocities, and the loads that acted."""
+        """What the states lack for going on to the bit: YADE's own velocities, and the loads."""
         bodies = [self.O.bodies[body].state for body in self.bodies.values()]
         return {"velocities": np.array([[*s.vel, *s.angVel] for s in bodies]).reshape(-1, 6),
                 "positions": np.array([[*s.pos] for s in bodies]).reshape(-1, 3),
@@ -176,7 +177,7 @@ class Grains:
 
 
 class Springs:
-    """Law2_ScGeom_ViscElPhys_Basic: F_n = k δ - γ v_n, and where the scene says `friction` tangential springs as stiff."""
+    """Law2_ScGeom_ViscElPhys_Basic: F_n = k δ - γ v_n; where the scene says `friction`, tangential springs as stiff."""
 
     reach, damping = 1.0, 0.0
 
@@ -215,7 +216,7 @@ class Bonds:
         self.stiffness = number("bond_stiffness", number("contact_stiffness"))
         self.strengths = number("bond_strength"), number("bond_shear_strength", number("bond_strength"))
         self.reach = 1 + number("bond_gap", 0.02) / 2
-        self.damping = number("numerical_damping", 0.0)  # YADE's own, the law has no dashpots
+        self.damping = number("numerical_damping", 0.3)  # YADE's own: the law has no dashpots, and bonds would ring
         # of equal balls: kn = young × radius, ks = poisson × kn
         self.material = y.CohFrictMat(density=grains.density, young=self.stiffness / grains.r, poisson=1.0,
                                       frictionAngle=math.atan(number("friction", 0.5)), isCohesive=True, fragile=True,
@@ -258,8 +259,8 @@ with bplbm_solid.Solid("yade") as fluid:
     failed = []
 
     def exchange():
-        """At the beginning of every interval, between YADE's contacts and its motion. What is raised here YADE would only
-        print: it is kept, and raised again when YADE has stopped."""
+        """At the beginning of every interval, between YADE's contacts and its motion. What is raised here YADE would
+        only print: it is kept, and raised again when YADE has stopped."""
         try:
             begins = O.iter == 0
             if begins:
