@@ -174,6 +174,8 @@ Range extent(const Scene& s, const BoundaryScene& b, int k) {
   return {b.from[k].value_or(lo), b.to[k].value_or(lo + s.box.size[axis])};
 }
 
+constexpr const char* kSideNames[] = {"left", "right", "bottom", "top", "back", "front"};
+
 void check_boundaries(const Scene& s) {
   for (std::size_t i = 0; i < s.boundaries.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -184,10 +186,10 @@ void check_boundaries(const Scene& s) {
         shared = shared && std::min(first.hi, second.hi) > std::max(first.lo, second.lo);
       }
       if (shared)
-        throw InputError(
-            s.file + ": boundary",
-            fmt::format("the {}. and the {}. lie on the same part of a side", j + 1, i + 1),
-            "part them with from and to, or leave one out");
+        throw InputError(s.file,
+                         fmt::format("boundaries {} and {} overlap on side \"{}\"", j + 1, i + 1,
+                                     kSideNames[static_cast<int>(a.side)]),
+                         "part them with from and to, or leave one out");
     }
 }
 
@@ -327,7 +329,8 @@ void check_overlaps(const Scene& s, Plan& plan) {
 void check_viscosity(const Scene& s, Plan& plan) {
   if (s.fluid.viscosity > kThick)
     plan.warnings.push_back(fmt::format(
-        "fluid.kinematic_viscosity = {:.3g} m²/s is that of tar (water: 1e-6): is its unit right?",
+        "fluid.kinematic_viscosity = {:.3g} m²/s is unusually large for a liquid (water: 1e-6); "
+        "kinematic viscosity is in m²/s",
         s.fluid.viscosity));
 }
 
