@@ -63,9 +63,25 @@ struct InitialScene {
   double perturbation = 0.05;
 };
 
+/// How the viscosity depends on the shear rate (viscosity/viscosity_law.h has the equations).
+struct ViscosityScene {
+  enum class Model { Newtonian, Smagorinsky, PowerLaw, Carreau, Bingham, HerschelBulkley };
+  enum class Regularisation { BiViscosity, Papanastasiou };
+  Model model = Model::Newtonian;
+  double consistency = 0.0;              ///< K [Pa sⁿ]; of a Bingham fluid its plastic viscosity
+  double index = 1.0;                    ///< n
+  double yield_stress = 0.0;             ///< σ_y [Pa]
+  double time_constant = 0.0;            ///< λ of Carreau's law [s]
+  std::optional<double> nu_min, nu_max;  ///< bounds [m²/s]; absent: see ViscosityLaw
+  std::optional<double> shear_rate;      ///< a typical one [1/s]; absent: typical_shear_rate
+  Regularisation regularisation = Regularisation::BiViscosity;
+  double smagorinsky = 0.0;  ///< S_c of the eddy viscosity that comes on top; 0: none
+};
+
 struct FluidScene {
-  double density = 1000.0;     ///< [kg/m^3]
-  double viscosity = 1e-6;     ///< kinematic [m^2/s]
+  double density = 1000.0;  ///< [kg/m^3]
+  double viscosity = 1e-6;  ///< kinematic [m^2/s]; where it varies, at the typical shear rate
+  ViscosityScene law;
   Vec3 gravity;                ///< [m/s^2]
   Vec3 body_force;             ///< acceleration that drives the fluid [m/s^2]
   double body_force_ramp = 0;  ///< time in which it comes up [s]

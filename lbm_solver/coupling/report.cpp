@@ -10,6 +10,8 @@
 #include <numbers>
 
 #include "lbm_solver/immersed/solid_term.h"
+#include "lbm_solver/solver/viscosity_plan.h"
+#include "lbm_solver/viscosity/viscosity_law.h"
 
 namespace lbm {
 namespace {
@@ -103,6 +105,7 @@ std::string describe_choices() {
   line("numerics.collision", names_of(known_collisions()));
   line("numerics.solid_term", known_solid_terms());
   line("numerics.scheme", names_of(known_schemes()));
+  line("fluid.viscosity.model", names_of(known_viscosities()));
   return out + "or \"auto\"; lbm_solver/docs/scene.md has every key of a scene\n";
 }
 
@@ -130,6 +133,7 @@ std::string describe(const Scene& s, const Plan& p) {
                                  p.lattice_speed, p.step_limit));
   line("fluid", fmt::format("ρ {:.6g} kg/m³, ν {:.6g} m²/s, τ = {:.6g}", s.fluid.density,
                             s.fluid.viscosity, p.kernel.parameters.tau));
+  for (const std::string& text : describe_viscosity(s, p)) line("viscosity", text);
   line("numbers",
        fmt::format("Re {:.4g}, Re_h {:.3g}, Ma = u/c_s {:.3g}, u/C {:.3g} at u = {:.4g} m/s",
                    p.reynolds, p.reynolds_cell, p.u_over_c * std::numbers::sqrt3, p.u_over_c,
@@ -171,6 +175,8 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   part(!s.boundaries.empty(), "boundaries: " + boundary_text(s), "inlets and outlets");
   part(s.box.pressure_jump.norm() > 0.0, "pressure jump", "pressure jump");
   part(p.kernel.force, "body force", "body force");
+  part(p.kernel.parameters.viscosity_table != nullptr, name_of(s.fluid.law.model) + " viscosity",
+       "viscosity that depends on shear");
   part(p.kernel.parameters.smagorinsky > 0.0, "Smagorinsky turbulence", "turbulence model");
   const bool imb = p.scheme == SolidScheme::ImmersedMovingBoundary;
   part(p.kernel.solid_term != "none" || !imb,

@@ -36,6 +36,18 @@ numerics.cell = 0.1
 run.end_time = 1
 boundary = [{side = "front", kind = "outflow", from = [0, 0], to = [1, 1]}]
 obstacle = [{centre = [0, 0, 0], diameter = 1}]
+)",
+    R"(
+box.size = [1, 1]
+fluid = {density = 1, velocity_scale = 1, viscosity = {model = "herschel_bulkley", consistency = 1, index = 1, yield_stress = 1}}
+numerics.cell = 0.1
+run.end_time = 1
+)",
+    R"(
+box.size = [1, 1]
+fluid = {density = 1, velocity_scale = 1, viscosity = {model = "carreau", index = 1, time_constant = 1, nu_min = 1, nu_max = 2}}
+numerics.cell = 0.1
+run.end_time = 1
 )"};
 
 /// What the reader does not know of a key.
@@ -59,7 +71,23 @@ constexpr Meaning kMeanings[] = {
     {"box.sides_z", "The same of back and front, in three dimensions."},
     {"box.pressure_jump", "Pressure of the low side minus that of the high side, if periodic."},
     {"fluid.density", "Density of the fluid."},
-    {"fluid.kinematic_viscosity", "Kinematic viscosity of the fluid."},
+    {"fluid.kinematic_viscosity", "Kinematic viscosity of the fluid.",
+     "required without fluid.viscosity"},
+    {"fluid.viscosity.model", "Law of a viscosity that depends on the shear rate (viscosity.md)."},
+    {"fluid.viscosity.consistency", "K; of a Bingham fluid the plastic viscosity, in Pa s.",
+     "required"},
+    {"fluid.viscosity.index", "Index n of the law.", "required"},
+    {"fluid.viscosity.yield_stress", "Stress below which the fluid hardly moves.", "required"},
+    {"fluid.viscosity.regularisation", "What replaces the law below the yield stress."},
+    {"fluid.viscosity.time_constant", "λ of Carreau's law.", "required"},
+    {"fluid.viscosity.nu_min", "Lower bound of the kinematic viscosity.",
+     "typical viscosity / 100"},
+    {"fluid.viscosity.nu_max", "Upper bound of the kinematic viscosity.",
+     "typical viscosity × 100"},
+    {"fluid.viscosity.shear_rate",
+     "A typical shear rate, at which the viscosity counts as the viscosity.",
+     "velocity_scale / length"},
+    {"fluid.viscosity.smagorinsky", "As numerics.smagorinsky, on top of any law."},
     {"fluid.gravity", "Gravity, which acts on the particles; the fluid gives them buoyancy."},
     {"fluid.body_force", "Acceleration that drives the fluid."},
     {"fluid.body_force_ramp", "Time in which the body force comes up as ½(1 - cos)."},

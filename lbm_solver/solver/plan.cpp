@@ -12,6 +12,7 @@
 #include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/expected_error.h"
 #include "lbm_solver/solver/scene_check.h"
+#include "lbm_solver/solver/viscosity_plan.h"
 
 namespace lbm {
 namespace {
@@ -351,6 +352,7 @@ Plan make_plan(const Scene& s, std::optional<double> step) {
   choose_step(s, plan);
   fit_to_end(s, step, plan);
   choose_kernel(s, plan);
+  plan_viscosity(s, plan);
   judge_step(s, plan);
   expect_error(s, plan);
   if (s.coupling) choose_substeps(s, plan);

@@ -15,9 +15,9 @@ LBM = {
     "viscosity": {"base", "lattice", "collision"},
     "boundary": {"base", "lattice", "field", "collision"},
     "immersed": {"base", "lattice", "field", "collision"},
-    "io": {"base", "field"},
+    "io": {"base", "field", "viscosity"},
     "solver": {"base", "lattice", "field", "collision", "viscosity", "boundary", "immersed"},
-    "coupling": {"base", "lattice", "field", "collision", "boundary", "immersed", "solver", "io"},
+    "coupling": {"base", "lattice", "field", "collision", "viscosity", "boundary", "immersed", "solver", "io"},
     "main.cpp": {"base", "lattice", "field", "collision", "immersed", "solver", "io", "coupling"},
 }
 # The same of protocol/; its main programs may use all of them.
