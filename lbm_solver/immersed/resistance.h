@@ -102,7 +102,7 @@ class ResistanceCollision {
     const V rho = m.drho + V(1.0);
     V tau(tau_);
     if constexpr (Collision::turbulent) tau = collide.relaxation_time(f, m);
-    const auto kind = LaneChoice::which(cell.cover + V(1.0 - kWhole));
+    const auto kind = kinds_of(cell.cover);
     const V eps = fraction_of(cell.cover);
     const auto whole = eps >= V(kWhole);
     OddExchange<V> odd = surface_exchange<L, V>(eps, tau - V(0.5), V(mu_zero_));

@@ -121,7 +121,7 @@ class CoveredCollision {
     V tau(weight_.tau);
     if constexpr (Collision::turbulent) tau = collide.relaxation_time(f, m);
     const V weight = weight_(fraction_of(cell.cover), tau);
-    const auto kind = LaneChoice::which(cell.cover + V(1.0 - kWhole));
+    const auto kind = kinds_of(cell.cover);
     const auto of = [&](const Factor& factor) __attribute__((always_inline)) {
       return V(factor.fluid) + weight * factor.solid_less_fluid(kind);
     };

@@ -8,6 +8,7 @@
 
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/base/simd.h"
+#include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/immersed/solid_fraction.h"
 
@@ -29,7 +30,8 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
                        domain(), cells(), radius_shift(choice.solid_term, domain().dimension()))),
       medium_{choice.parameters, choice.turbulence != "none", cover_.get(),
               SolidShare(choice.solid_term, choice.weight, choice.parameters)},
-      two_steps_(load_lag(choice.solid_term, choice.parameters.tau)) {
+      two_steps_(load_lag(choice.solid_term, choice.parameters.tau)),
+      fixed_two_steps_(two_steps_) {
   if (!choice.force) {
     CollisionParameters& p = choice_.parameters;
     p.force_x = p.force_y = p.force_z = 0.0;
@@ -69,6 +71,14 @@ void Fluid::set_body_force() {
   if (scheme_) scheme_->set_body_force(body_force());
 }
 
+void Fluid::add(const Geometry& geometry) {
+  BPLBM_EXPECT(cover_ != nullptr);
+  cover_->add(geometry);
+  Body& body = fixed_.emplace_back();
+  body.id = static_cast<std::int64_t>(fixed_.size());
+  body.centre = geometry.centre();
+}
+
 void Fluid::place(std::span<const Body> bodies) {
   BPLBM_EXPECT(has_solids());
   remember_loads();
@@ -80,12 +90,19 @@ void Fluid::place(std::span<const Body> bodies) {
 void Fluid::remember_loads() {
   if (!two_steps_.on() || scheme_ || !loads_are_new_) return;
   two_steps_.remember(bodies_, cover_->loads());
+  if (!fixed_.empty()) fixed_two_steps_.remember(fixed_, cover_->fixed_loads());
   loads_are_new_ = false;
 }
 
 std::vector<BodyLoad> Fluid::loads() const {
   if (!two_steps_.on() || scheme_) return momentary_loads();
   return two_steps_.mean(bodies_, cover_->loads(), domain(), cells());
+}
+
+std::vector<BodyLoad> Fluid::fixed_loads() const {
+  if (fixed_.empty()) return {};
+  if (!two_steps_.on()) return cover_->fixed_loads();
+  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells());
 }
 
 namespace {
@@ -147,7 +164,7 @@ void Fluid::sweep_and_exchange(EsotericPull& stream) {
 }
 
 void Fluid::advance(std::int64_t steps) {
-  if (!two_steps_.on() || bodies_.empty()) return make_steps(steps);
+  if (!two_steps_.on() || (bodies_.empty() && fixed_.empty())) return make_steps(steps);
   remember_loads();
   if (steps > 1) {  // the load of a step needs that of the step before
     make_steps(steps - 1);
@@ -388,6 +405,11 @@ Record Fluid::save() const {
     TwoStepLoads last = two_steps_;
     if (loads_are_new_) last.remember(bodies_, cover_->loads());
     record.set("loads", last.save(*ranks_));
+    if (!fixed_.empty()) {
+      TwoStepLoads fixed = fixed_two_steps_;
+      if (loads_are_new_) fixed.remember(fixed_, cover_->fixed_loads());
+      record.set("fixed_loads", fixed.save(*ranks_));
+    }
   }
   return record;
 }
@@ -398,6 +420,7 @@ void Fluid::load(const Record& record) {
   if (scheme_) scheme_->load(record.part("scheme"));
   if (two_steps_.on()) {
     two_steps_.load(record.part("loads"));
+    if (!fixed_.empty()) fixed_two_steps_.load(record.part("fixed_loads"));
     loads_are_new_ = false;
   }
   const Cell3 n = cells().size, all = domain().cells();
