@@ -6,6 +6,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import h5py
 import numpy as np
@@ -48,6 +49,14 @@ class Meshes(unittest.TestCase):
             facets = b"".join(bytes(12) + one.tobytes() + bytes(2) for one in corners)
             path.write_bytes(bytes(80) + (2).to_bytes(4, "little") + facets)
             np.testing.assert_array_equal(shapes.read_stl(path), corners)
+
+    def test_the_screen_is_what_its_script_makes(self):
+        case = ROOT / "cases/screen_clogging"
+        script = module_of(case / "make_screen.py")
+        for name, width in (("wide", "4.5"), ("narrow", "1.2")):
+            with tempfile.TemporaryDirectory() as folder, mock.patch("sys.argv", ["", f"{folder}/screen.stl", width]):
+                script.main()
+                self.assertEqual(pathlib.Path(folder, "screen.stl").read_text(), (case / f"{name}.stl").read_text())
 
 
 class Images(unittest.TestCase):
