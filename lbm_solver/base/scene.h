@@ -6,12 +6,15 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lbm_solver/base/side.h"
+#include "lbm_solver/base/triangle_mesh.h"
 #include "lbm_solver/base/units.h"
+#include "lbm_solver/base/voxels.h"
 #include "protocol/wire/messages.h"
 
 namespace lbm {
@@ -43,8 +46,25 @@ struct BoundaryScene {
   double frequency = 0.0;  ///< velocity × cos(2 pi f t) [Hz]
 };
 
-/// A solid that stays where it is: a disc or sphere (curved, with force and torque) or a block of
-/// whole cells.
+/// A surface from a file, as it lies in the box.
+struct MeshScene {
+  std::string file;
+  std::shared_ptr<const TriangleMesh> surface;  ///< closed [m]
+  bool hollow = false;                          ///< solid is what lies outside of it
+  double thickness = 0.0;                       ///< of a layer that was made of the surface [m]
+  double volume = 0.0;                          ///< that it encloses [m^3]
+};
+
+/// An image from a file, as solid fractions.
+struct ImageScene {
+  std::string file;
+  std::shared_ptr<const Voxels> voxels;
+  double voxel = 0.0;  ///< size of one [m]
+  Vec3 at;             ///< lower corner [m]
+};
+
+/// A solid that stays where it is: a disc or sphere (curved, it may spin), a block of whole cells,
+/// a mesh or an image.
 struct ObstacleScene {
   bool round = false;   ///< a disc, in three dimensions a sphere
   bool hollow = false;  ///< round, and solid outside
@@ -53,6 +73,10 @@ struct ObstacleScene {
   Vec3 centre;
   double diameter = 0.0;  ///< [m]
   Vec3 from, to;          ///< corners of a block [m]
+  std::optional<MeshScene> mesh;
+  std::optional<ImageScene> image;
+
+  bool block() const { return !round && !mesh && !image; }
 };
 
 struct InitialScene {

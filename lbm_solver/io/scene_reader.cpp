@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/obstacle_reader.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
 #include "lbm_solver/viscosity/viscosity_law.h"
@@ -285,25 +286,6 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box) {
   return b;
 }
 
-ObstacleScene read_obstacle(TableReader t, int d) {
-  ObstacleScene o;
-  o.round = t.has("centre");
-  if (o.round) {
-    o.centre = t.vector("centre", d, "[m]");
-    o.diameter = t.number("diameter", Bounds::positive(), "m");
-    o.hollow = t.flag_or("hollow", false);
-    if (d == 3)
-      o.spin = t.vector_or_zero("spin", 3, "[rad/s]");
-    else
-      o.spin.z() = t.number_or("spin", 0.0, {}, "rad/s");
-  } else {
-    o.from = t.vector("from", d, "[m], or centre and diameter of a disc or sphere");
-    o.to = t.vector("to", d, "[m]");
-  }
-  t.finish();
-  return o;
-}
-
 /// Discs or spheres at rest from a table `x,y,diameter` or `x,y,z,diameter` in m, beside the scene.
 void read_grains(TableReader t, const std::string& scene_file, int d,
                  std::vector<ObstacleScene>& obstacles) {
@@ -457,7 +439,7 @@ Scene read_tables(const toml::table& merged, const std::vector<std::string>& fil
   for (const TableReader& t : root.tables("boundary"))
     scene.boundaries.push_back(read_boundary(t, scene.box));
   for (const TableReader& t : root.tables("obstacle"))
-    scene.obstacles.push_back(read_obstacle(t, d));
+    scene.obstacles.push_back(read_obstacle(t, files.front(), scene.box));
   read_grains(root.optional_table("grains"), files.front(), d, scene.obstacles);
   scene.initial = read_initial(root.optional_table("initial"), d);
   settle_viscosity(root, scene);

@@ -148,11 +148,18 @@ void choose_solids(const Scene& s, Plan& plan) {
   KernelChoice& k = plan.kernel;
   k.solid_term = "none";
   const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                  [](const ObstacleScene& o) { return !o.round; });
+                                  [](const ObstacleScene& o) { return o.block(); });
+  const bool shapes = std::any_of(s.obstacles.begin(), s.obstacles.end(),
+                                  [](const ObstacleScene& o) { return o.mesh || o.image; });
   const bool spinning = std::any_of(s.obstacles.begin(), s.obstacles.end(),
                                     [](const ObstacleScene& o) { return !o.spin.isZero(0.0); });
   if (!s.coupling && s.obstacles.empty()) return;
   if (n.scheme != "auto" && n.scheme != name_of(plan.scheme)) {
+    if (shapes)
+      throw InputError(fmt::format("{}: numerics.scheme = \"{}\" knows discs, spheres and blocks, "
+                                   "no meshes and images",
+                                   s.file, n.scheme),
+                       "take scheme = \"immersed_moving_boundary\"");
     if (n.solid_term != "auto")
       throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
                        "leave it out, or take scheme = \"immersed_moving_boundary\"");

@@ -26,7 +26,7 @@ PROTOCOL = {"wire": set(), "program": {"wire"}, "transport": {"wire", "program"}
 # Library header (prefix) -> files that may use it.
 ONLY = {
     "mpi.h": r"protocol/(transport/mpi_channel|program/(mpi_calls|program)|solid/).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
-    "hdf5": r"protocol/transport/(hdf5_file|trace).*|lbm_solver/io/field_writer\.cpp",
+    "hdf5": r"protocol/transport/(hdf5_file|trace).*|lbm_solver/io/(field_writer|image_file)\.cpp",
     "lammps": r"liggghts_coupling/(host|bond)/.*",
     "atom.h": r"liggghts_coupling/(host|bond)/.*",
     "fix.h": r"liggghts_coupling/(host|bond)/.*",

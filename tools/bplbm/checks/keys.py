@@ -38,7 +38,7 @@ def first_column(text):
 
 
 def scene_keys():
-    return found(CALL, read("lbm_solver/io/scene_reader.cpp")), \
+    return found(CALL, read("lbm_solver/io/scene_reader.cpp") + read("lbm_solver/io/obstacle_reader.cpp")), \
         first_column(section(SCENE, "## Keys of a scene")) - {"NAME"}
 
 
