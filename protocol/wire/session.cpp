@@ -48,14 +48,24 @@ bool finite(const Vec3& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
+[[noreturn]] void refuse_vector(std::int64_t id, const Vec3& value, const char* what,
+                                std::int64_t interval) {
+  throw BadMessage(format("particle {}: {} is ({}, {}, {}) at interval {}: not finite", id, what,
+                          value[0], value[1], value[2], interval),
+                   kNumerics);
+}
+
 /// @throws BadMessage where a vector of a record is not finite
 template <class Record>
 void expect_finite(const Record& record, const Vec3& value, const char* what,
                    std::int64_t interval) {
-  if (!finite(value))
-    throw BadMessage(format("particle {}: {} is ({}, {}, {}) at interval {}: not finite", record.id,
-                            what, value[0], value[1], value[2], interval),
-                     kNumerics);
+  if (!finite(value)) refuse_vector(record.id, value, what, interval);
+}
+
+[[noreturn]] void refuse_load(std::int64_t id, std::int64_t expected, std::int64_t interval) {
+  throw ProtocolError(
+      format("the fluid computed a load of particle {} in place of {} at interval {}", id, expected,
+             interval));
 }
 
 [[noreturn]] void refuse_astray(const State& s, std::int64_t interval) {
@@ -232,6 +242,7 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
   std::sort(origins.begin(), origins.end(),
             [](const Origin& a, const Origin& b) { return a.id < b.id; });
   const std::vector<Particle> last = std::exchange(arrival_.particles, {});
+  ids_.clear();
   for (std::size_t r = 0; r < batches.size(); ++r) order_[r].resize(batches[r].states.size());
   std::unordered_map<std::int64_t, Shape> present;
   for (const Origin& o : origins) {
@@ -243,6 +254,7 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
       throw BadMessage(format("particle {} came twice at interval {}", o.id, next_interval_));
     order_[o.rank][o.record] = arrival_.particles.size();
     arrival_.particles.push_back({batches[o.rank].states[o.record], shape->second});
+    ids_.push_back(o.id);
   }
   if (const auto twice = std::adjacent_find(told.begin(), told.end()); twice != told.end())
     throw BadMessage(
@@ -256,28 +268,16 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
   check_states(last, told);
 }
 
-namespace {
-
-/// @throws ProtocolError  where they are not one each a particle, in the same order
-void expect_loads_of(std::span<const Particle> particles, std::span<const Load> loads,
-                     std::int64_t interval) {
-  if (loads.size() != particles.size())
-    throw ProtocolError(format("the fluid computed {} loads for {} particles at interval {}",
-                               loads.size(), particles.size(), interval));
-  for (std::size_t i = 0; i < loads.size(); ++i)
-    if (loads[i].id != particles[i].state.id)
-      throw ProtocolError(
-          format("the fluid computed a load of particle {} in place of {} at interval {}",
-                 loads[i].id, particles[i].state.id, interval));
-}
-
-}  // namespace
-
 void FluidSession::answer(std::span<const Load> loads, std::uint32_t flags) {
   const StepHeader head{arrival_.head.interval, arrival_.head.time, flags};
-  expect_loads_of(arrival_.particles, loads, head.interval);
+  if (loads.size() != ids_.size())
+    throw ProtocolError(format("the fluid computed {} loads for {} particles at interval {}",
+                               loads.size(), ids_.size(), head.interval));
   double largest = 0.0;
+  auto id = ids_.begin();
   for (const Load& load : loads) {
+    if (load.id != *id) refuse_load(load.id, *id, head.interval);
+    ++id;
     expect_finite(load, load.force, "hydrodynamic force", head.interval);
     expect_finite(load, load.torque, "hydrodynamic torque", head.interval);
     const auto& [x, y, z] = load.force;

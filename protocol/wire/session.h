@@ -65,6 +65,7 @@ class FluidSession {
   std::int64_t next_interval_;
   std::unordered_map<std::int64_t, Shape> shapes_;
   Arrival arrival_;
+  std::vector<std::int64_t> ids_;                  // of its particles
   std::vector<std::vector<std::size_t>> order_;    // [solid rank][record] -> index in arrival_
   std::vector<std::vector<std::int64_t>> before_;  // [solid rank] ids of the interval before
 };

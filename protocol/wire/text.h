@@ -53,9 +53,10 @@ class Pattern {
 };
 
 /// The pattern with an argument in place of each field: `{}` as it is, a number with as many digits
-/// as it needs; `{:.6g}` a number as printf writes it; `{:x}` a whole number with base 16.
+/// as it needs; `{:.6g}` a number as printf writes it; `{:x}` a whole number with base 16. Never a
+/// part of its caller: most messages are of checks in loops over all particles, and never written.
 template <class... Args>
-std::string format(Pattern<sizeof...(Args)> pattern, const Args&... args) {
+[[gnu::noinline]] std::string format(Pattern<sizeof...(Args)> pattern, const Args&... args) {
   std::string result;
   std::string_view rest = pattern.text();
   result.reserve(rest.size() + 8 * sizeof...(Args));
