@@ -1,4 +1,5 @@
-"""Thin command: see bplbm/checks/documents.py; with --commands bplbm/checks/commands.py, which needs the programs built."""
+"""Thin command: see bplbm/checks/documents.py (--wrap: fills paragraphs that are too wide anew); with --commands
+bplbm/checks/commands.py, which needs the programs built."""
 
 import sys
 

@@ -68,8 +68,10 @@ class Fracture:
 
     def energies(self, times):
         """Of the bonds and contacts at times [s], from the coming of the water on: dict of arrays [J]."""
-        table = read_table(self.run.folder / "energy.csv")
-        return {f"{key}_energy": np.interp(times, table["time"], table[key] - table[key][0])
+        table = read_table(self.run.folder / "energy.csv")  # a restart adds a row of nan, and repeats what came after it
+        rows = np.flatnonzero(np.isfinite(table["time"]))
+        rows = rows[len(rows) - 1 - np.unique(table["time"][rows][::-1], return_index=True)[1]]
+        return {f"{key}_energy": np.interp(times, table["time"][rows], table[key][rows] - table[key][rows[0]])
                 for key in ("elastic", "friction", "damping", "released")}
 
     def history(self):

@@ -1,6 +1,6 @@
 """The reference of this scene: the same flow, incompressible, by a pseudo-spectral method (vorticity, Fourier modes cut at
-two thirds, fourth-order Runge–Kutta with the viscosity exact). Usage: reference.py [MODES], 512 by default: a quarter of
-an hour. It shares nothing with lbm."""
+two thirds, fourth-order Runge–Kutta with the viscosity exact). Usage: reference.py [MODES], 256 by default: some
+minutes. It shares nothing with lbm."""
 
 import sys
 
@@ -44,4 +44,4 @@ def main(n):
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 512)
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 256)

@@ -6,12 +6,15 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lbm_solver/base/side.h"
+#include "lbm_solver/base/triangle_mesh.h"
 #include "lbm_solver/base/units.h"
+#include "lbm_solver/base/voxels.h"
 #include "protocol/wire/messages.h"
 
 namespace lbm {
@@ -43,8 +46,25 @@ struct BoundaryScene {
   double frequency = 0.0;  ///< velocity × cos(2 pi f t) [Hz]
 };
 
-/// A solid that stays where it is: a disc or sphere (curved, with force and torque) or a block of
-/// whole cells.
+/// A surface from a file, as it lies in the box.
+struct MeshScene {
+  std::string file;
+  std::shared_ptr<const TriangleMesh> surface;  ///< closed [m]
+  bool hollow = false;                          ///< solid is what lies outside of it
+  double thickness = 0.0;                       ///< of a layer that was made of the surface [m]
+  double volume = 0.0;                          ///< that it encloses [m^3]
+};
+
+/// An image from a file, as solid fractions.
+struct ImageScene {
+  std::string file;
+  std::shared_ptr<const Voxels> voxels;
+  double voxel = 0.0;  ///< size of one [m]
+  Vec3 at;             ///< lower corner [m]
+};
+
+/// A solid that stays where it is: a disc or sphere (curved, it may spin), a block of whole cells,
+/// a mesh or an image.
 struct ObstacleScene {
   bool round = false;   ///< a disc, in three dimensions a sphere
   bool hollow = false;  ///< round, and solid outside
@@ -53,6 +73,10 @@ struct ObstacleScene {
   Vec3 centre;
   double diameter = 0.0;  ///< [m]
   Vec3 from, to;          ///< corners of a block [m]
+  std::optional<MeshScene> mesh;
+  std::optional<ImageScene> image;
+
+  bool block() const { return !round && !mesh && !image; }
 };
 
 struct InitialScene {
@@ -63,9 +87,25 @@ struct InitialScene {
   double perturbation = 0.05;
 };
 
+/// How the viscosity depends on the shear rate (viscosity/viscosity_law.h has the equations).
+struct ViscosityScene {
+  enum class Model { Newtonian, Smagorinsky, PowerLaw, Carreau, Bingham, HerschelBulkley };
+  enum class Regularisation { BiViscosity, Papanastasiou };
+  Model model = Model::Newtonian;
+  double consistency = 0.0;              ///< K [Pa sⁿ]; of a Bingham fluid its plastic viscosity
+  double index = 1.0;                    ///< n
+  double yield_stress = 0.0;             ///< σ_y [Pa]
+  double time_constant = 0.0;            ///< λ of Carreau's law [s]
+  std::optional<double> nu_min, nu_max;  ///< bounds [m²/s]; absent: see ViscosityLaw
+  std::optional<double> shear_rate;      ///< a typical one [1/s]; absent: typical_shear_rate
+  Regularisation regularisation = Regularisation::BiViscosity;
+  double smagorinsky = 0.0;  ///< S_c of the eddy viscosity that comes on top; 0: none
+};
+
 struct FluidScene {
-  double density = 1000.0;     ///< [kg/m^3]
-  double viscosity = 1e-6;     ///< kinematic [m^2/s]
+  double density = 1000.0;  ///< [kg/m^3]
+  double viscosity = 1e-6;  ///< kinematic [m^2/s]; where it varies, at the typical shear rate
+  ViscosityScene law;
   Vec3 gravity;                ///< [m/s^2]
   Vec3 body_force;             ///< acceleration that drives the fluid [m/s^2]
   double body_force_ramp = 0;  ///< time in which it comes up [s]

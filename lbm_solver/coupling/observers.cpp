@@ -120,6 +120,18 @@ void Observers::at_state(std::int64_t state, Fluid& fluid, const Particles* part
   }
   measure(state, fluid, last);
   if (last && particles) write_particles(time_of(state), *particles);
+  if (last && plan_.kernel.parameters.viscosity_table) report_viscosity(state, fluid);
+}
+
+/// Where the viscosity depends on the shear rate: how much of the fluid lies beyond its bounds.
+void Observers::report_viscosity(std::int64_t state, const Fluid& fluid) {
+  viscosity_ = viscosity_use(fluid, *plan_.kernel.parameters.viscosity_table);
+  log_.say(
+      state, "viscosity",
+      "{:.3g} % of the fluid is at the bound of low shear rates, {:.3g} % at that of high ones; "
+      "largest shear rate {:.4g} 1/s",
+      100.0 * viscosity_->at_rest_bound, 100.0 * viscosity_->at_shear_bound,
+      viscosity_->largest_shear / plan_.units.dt);
 }
 
 /// What the scene's sensors and its average want of a state.
@@ -351,6 +363,13 @@ Summary Observers::summary(double wall_seconds) const {
                   {"box_x", scene_.box.size.x()},
                   {"box_y", scene_.box.size.y()},
                   {"velocity_scale", scene_.fluid.velocity_scale}};
+  if (viscosity_) {
+    s.parameters["share_at_rest_bound"] = viscosity_->at_rest_bound;
+    s.parameters["share_at_shear_bound"] = viscosity_->at_shear_bound;
+    s.parameters["shear_rate_max"] = viscosity_->largest_shear / plan_.units.dt;
+    s.parameters["mean_viscosity"] =
+        viscosity_->mean_viscosity * plan_.units.dx * plan_.units.dx / plan_.units.dt;
+  }
   if (scene_.box.dimension == 3) {
     s.parameters["box_z"] = scene_.box.size.z();
     s.parameters["gravity_z"] = scene_.fluid.gravity.z();

@@ -19,6 +19,7 @@
 #include "lbm_solver/io/probe_writer.h"
 #include "lbm_solver/io/summary.h"
 #include "lbm_solver/solver/plan.h"
+#include "lbm_solver/solver/viscosity_use.h"
 
 namespace lbm {
 
@@ -93,6 +94,7 @@ class Observers {
   void write_fields(double time, Fluid& fluid, const Particles* particles);
   void write_points(double time, Fluid& fluid);
   void write_particles(double time, const Particles& particles);
+  void report_viscosity(std::int64_t state, const Fluid& fluid);
   void report_progress(std::int64_t state, const Particles* particles);
 
   const Scene& scene_;
@@ -114,6 +116,7 @@ class Observers {
   double max_speed_ = 0.0, last_speed_ = 0.0;  // of the fluid, lattice units
   SpeedRecord speeds_;
   bool warned_ = false;                                 // of a speed above kWarnSpeed
+  std::optional<ViscosityUse> viscosity_;               // at the end, where it varies
   double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out
   std::chrono::steady_clock::time_point start_, last_progress_;
 };

@@ -40,6 +40,7 @@ class ObstacleLoads {
   std::optional<CsvWriter> table_;  // of rank 0
   std::vector<int> line_;           // [round obstacle]: into sums_
   std::vector<int> block_line_;     // [block]: into sums_
+  std::vector<int> shape_line_;     // [mesh or image]: into sums_
   const std::vector<CellBox> boxes_;
   std::optional<BlockLoads> blocks_;  // from the first step on
   std::vector<BodyLoad> sums_;        // since the last line, of this rank; 0: grains

@@ -8,8 +8,11 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "lbm_solver/immersed/solid_term.h"
+#include "lbm_solver/solver/viscosity_plan.h"
+#include "lbm_solver/viscosity/viscosity_law.h"
 
 namespace lbm {
 namespace {
@@ -92,6 +95,27 @@ std::vector<std::string> names_of(const std::vector<Choice>& choices) {
   return names;
 }
 
+/// What a mesh or an image is; empty for other obstacles.
+std::string shape_text(const ObstacleScene& o, double dx) {
+  if (o.mesh) {
+    const auto [low, high] = bounds(*o.mesh->surface);
+    const Vec3 size = high - low;
+    return fmt::format(
+        "mesh {}: {} triangles, {:.4g} × {:.4g} × {:.4g} m = {:.3g} × {:.3g} × {:.3g} cells, {} "
+        "{:.4g} m³{}",
+        o.mesh->file, o.mesh->surface->triangles.size(), size.x(), size.y(), size.z(),
+        size.x() / dx, size.y() / dx, size.z() / dx,
+        o.mesh->hollow ? "solid outside of" : "encloses", o.mesh->volume,
+        o.mesh->thickness > 0.0 ? fmt::format(", {:.3g} cells thick", o.mesh->thickness / dx) : "");
+  }
+  if (!o.image) return {};
+  const auto& [size, solid] = *o.image->voxels;
+  const double sum = std::accumulate(solid.begin(), solid.end(), 0.0);
+  return fmt::format("image {}: {} × {} × {} voxels of {:.4g} m, {:.3g} cells each, {:.4g} solid",
+                     o.image->file, size[0], size[1], size[2], o.image->voxel, o.image->voxel / dx,
+                     sum / static_cast<double>(solid.size()));
+}
+
 }  // namespace
 
 std::string describe_choices() {
@@ -103,6 +127,7 @@ std::string describe_choices() {
   line("numerics.collision", names_of(known_collisions()));
   line("numerics.solid_term", known_solid_terms());
   line("numerics.scheme", names_of(known_schemes()));
+  line("fluid.viscosity.model", names_of(known_viscosities()));
   return out + "or \"auto\"; lbm_solver/docs/scene.md has every key of a scene\n";
 }
 
@@ -130,6 +155,7 @@ std::string describe(const Scene& s, const Plan& p) {
                                  p.lattice_speed, p.step_limit));
   line("fluid", fmt::format("ρ {:.6g} kg/m³, ν {:.6g} m²/s, τ = {:.6g}", s.fluid.density,
                             s.fluid.viscosity, p.kernel.parameters.tau));
+  for (const std::string& text : describe_viscosity(s, p)) line("viscosity", text);
   line("numbers",
        fmt::format("Re {:.4g}, Re_h {:.3g}, Ma = u/c_s {:.3g}, u/C {:.3g} at u = {:.4g} m/s",
                    p.reynolds, p.reynolds_cell, p.u_over_c * std::numbers::sqrt3, p.u_over_c,
@@ -142,6 +168,10 @@ std::string describe(const Scene& s, const Plan& p) {
   if (s.particles && s.coupling) {
     const std::string text = hydraulic_text(*s.particles, p.units.dx, flat);
     if (!text.empty()) line("hydraulic", text);
+  }
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
+    const std::string text = shape_text(s.obstacles[i], p.units.dx);
+    if (!text.empty()) line("obstacle", fmt::format("{}. {}", i + 1, text));
   }
   if (s.coupling)
     line("coupling",
@@ -171,6 +201,8 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   part(!s.boundaries.empty(), "boundaries: " + boundary_text(s), "inlets and outlets");
   part(s.box.pressure_jump.norm() > 0.0, "pressure jump", "pressure jump");
   part(p.kernel.force, "body force", "body force");
+  part(p.kernel.parameters.viscosity_table != nullptr, name_of(s.fluid.law.model) + " viscosity",
+       "viscosity that depends on shear");
   part(p.kernel.parameters.smagorinsky > 0.0, "Smagorinsky turbulence", "turbulence model");
   const bool imb = p.scheme == SolidScheme::ImmersedMovingBoundary;
   part(p.kernel.solid_term != "none" || !imb,

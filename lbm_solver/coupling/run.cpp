@@ -328,11 +328,13 @@ void check_until(const Scene& scene, const RunOptions& options) {
 Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                     protocol::Channel& channel, const RunOptions& options, Log& log,
                     const Restart* restart) {
+  if (ranks.rank() == 0) write_meshes(scene, options.out);  // before the solid is told their names
   return CoupledRun(scene, plan, ranks, channel, options, log, restart).run();
 }
 
 Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                   const RunOptions& options, Log& log, const Restart* restart) {
+  if (ranks.rank() == 0) write_meshes(scene, options.out);
   Fluid fluid = make_fluid(scene, plan, ranks);
   if (restart) load_from(*restart, [&] { fluid.load(restart->record.part("fluid")); });
   Observers observers(scene, plan, ranks, options.out, log, fluid.steps());

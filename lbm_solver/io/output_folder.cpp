@@ -47,12 +47,13 @@ void mark(const fs::path& folder, const std::string& scene) {
                      "give a folder that is writable as --out; is the disk full?");
 }
 
-/// checkpoint.K.solid, fault.K.solid, and what a kill left of a file half written.
+/// checkpoint.K.solid, fault.K.solid, meshK.stl, and what a kill left of a file half written.
 bool is_part(const std::string& name) {
   const bool state = name.starts_with("checkpoint.") || name.starts_with("fault.");
   return (state && name.ends_with(".solid")) ||
          (name.ends_with(".part") && (state || name.starts_with("summary.json"))) ||
          name.ends_with(".csv.part") || (name.starts_with("sensor-") && name.ends_with(".csv")) ||
+         (name.starts_with("mesh") && name.ends_with(".stl")) ||
          (name.starts_with("fields-cut-off") && name.ends_with(".h5"));
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "lbm_solver/io/table_reader.h"
 
@@ -36,6 +37,32 @@ numerics.cell = 0.1
 run.end_time = 1
 boundary = [{side = "front", kind = "outflow", from = [0, 0], to = [1, 1]}]
 obstacle = [{centre = [0, 0, 0], diameter = 1}]
+)",
+    R"(
+box.size = [1, 1]
+fluid = {density = 1, velocity_scale = 1, viscosity = {model = "herschel_bulkley", consistency = 1, index = 1, yield_stress = 1}}
+numerics.cell = 0.1
+run.end_time = 1
+)",
+    R"(
+box.size = [1, 1]
+fluid = {density = 1, velocity_scale = 1, viscosity = {model = "carreau", index = 1, time_constant = 1, nu_min = 1, nu_max = 2}}
+numerics.cell = 0.1
+run.end_time = 1
+)",
+    R"(
+box.size = [1, 1, 1]
+fluid = {density = 1, kinematic_viscosity = 1, velocity_scale = 1}
+numerics.cell = 0.1
+run.end_time = 1
+obstacle = [{mesh = "none.stl"}]
+)",
+    R"(
+box.size = [1, 1]
+fluid = {density = 1, kinematic_viscosity = 1, velocity_scale = 1}
+numerics.cell = 0.1
+run.end_time = 1
+obstacle = [{image = "none.raw", voxel = 1, threshold = 1, at = [0, 0], cut_from = [0, 0], cut_to = [1, 1], raw_size = [1, 1]}]
 )"};
 
 /// What the reader does not know of a key.
@@ -59,7 +86,23 @@ constexpr Meaning kMeanings[] = {
     {"box.sides_z", "The same of back and front, in three dimensions."},
     {"box.pressure_jump", "Pressure of the low side minus that of the high side, if periodic."},
     {"fluid.density", "Density of the fluid."},
-    {"fluid.kinematic_viscosity", "Kinematic viscosity of the fluid."},
+    {"fluid.kinematic_viscosity", "Kinematic viscosity of the fluid.",
+     "required without fluid.viscosity"},
+    {"fluid.viscosity.model", "Law of a viscosity that depends on the shear rate (viscosity.md)."},
+    {"fluid.viscosity.consistency", "K; of a Bingham fluid the plastic viscosity, in Pa s.",
+     "required"},
+    {"fluid.viscosity.index", "Index n of the law.", "required"},
+    {"fluid.viscosity.yield_stress", "Stress below which the fluid hardly moves.", "required"},
+    {"fluid.viscosity.regularisation", "What replaces the law below the yield stress."},
+    {"fluid.viscosity.time_constant", "λ of Carreau's law.", "required"},
+    {"fluid.viscosity.nu_min", "Lower bound of the kinematic viscosity.",
+     "typical viscosity / 100"},
+    {"fluid.viscosity.nu_max", "Upper bound of the kinematic viscosity.",
+     "typical viscosity × 100"},
+    {"fluid.viscosity.shear_rate",
+     "A typical shear rate, at which the viscosity counts as the viscosity.",
+     "velocity_scale / length"},
+    {"fluid.viscosity.smagorinsky", "As numerics.smagorinsky, on top of any law."},
     {"fluid.gravity", "Gravity, which acts on the particles; the fluid gives them buoyancy."},
     {"fluid.body_force", "Acceleration that drives the fluid."},
     {"fluid.body_force_ramp", "Time in which the body force comes up as ½(1 - cos)."},
@@ -127,12 +170,34 @@ constexpr Meaning kMeanings[] = {
     {"boundary.frequency", "The velocity is multiplied by cos(2πft)."},
     {"boundary.pressure", "Pressure of a pressure or outflow, against the reference."},
     {"boundary.ramp", "Time in which the value comes up as ½(1 - cos)."},
-    {"obstacle.centre", "Centre of a disc or sphere at rest.", "required without from"},
+    {"obstacle.centre", "Centre of a disc or sphere at rest.",
+     "required without from, mesh and image"},
     {"obstacle.diameter", "Its diameter.", "required with centre"},
-    {"obstacle.hollow", "Whether the solid is everything outside of the circle or sphere."},
+    {"obstacle.hollow", "Whether the solid is everything outside of the circle, sphere or mesh."},
     {"obstacle.spin", "Angular velocity of a disc (a number) or sphere (a vector)."},
-    {"obstacle.from", "Lower corner of a block of whole cells at rest.", "required without centre"},
+    {"obstacle.from", "Lower corner of a block of whole cells at rest.",
+     "required without centre, mesh and image"},
     {"obstacle.to", "Upper corner of the block.", "required with from"},
+    {"obstacle.mesh", "Triangle mesh, an .stl file beside the scene (shapes.md).",
+     "required without centre, from and image"},
+    {"obstacle.scale", "Metres per unit of the mesh's file.", "1"},
+    {"obstacle.rotate", "Axis x, y, z through the file's origin, and degrees.", "none"},
+    {"obstacle.move", "Where the mesh goes after that."},
+    {"obstacle.thickness", "Makes a layer of the mesh's surface, which may then be open.", "none"},
+    {"obstacle.image", "Image beside the scene: .raw, .npy, .h5, .png or .tif (shapes.md).",
+     "required without centre, from and mesh"},
+    {"obstacle.voxel", "Size of a voxel.", "required with image"},
+    {"obstacle.at", "Lower corner of the image.", "box.origin"},
+    {"obstacle.threshold", "Level from which on the image is solid.",
+     "required without grey_levels"},
+    {"obstacle.solid", "Whether levels above or below the threshold are solid."},
+    {"obstacle.grey_levels", "Levels of fluid and of solid; between them are solid fractions.",
+     "none"},
+    {"obstacle.cut_from", "Lower corner of the part of the image that counts.", "all"},
+    {"obstacle.cut_to", "Upper corner of that part.", "all"},
+    {"obstacle.raw_size", "Voxels along x, y, z of a .raw file.", "required with .raw"},
+    {"obstacle.raw_type", "Type of its numbers.", "required with .raw"},
+    {"obstacle.dataset", "Data set of a .h5 file.", "required with .h5"},
     {"grains.file",
      "Table x,y,diameter (x,y,z,diameter) in m of discs (spheres) at rest, beside the scene; at "
      "most 256 MB.",
@@ -175,7 +240,11 @@ bool has_meaning(const KeyNote& note) {
 
 KeyNotes all_keys() {
   KeyNotes keys;
-  for (const std::string_view scene : kScenes) note_keys(std::string(scene), keys);
+  for (const std::string_view scene : kScenes) try {
+      note_keys(std::string(scene), keys);
+    } catch (const InputError&) {
+      // The file of a mesh or image is looked for after all keys of its table.
+    }
   return keys;
 }
 

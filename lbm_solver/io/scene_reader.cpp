@@ -11,8 +11,10 @@
 #include <fstream>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/obstacle_reader.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
+#include "lbm_solver/viscosity/viscosity_law.h"
 #include "protocol/program/checksum.h"
 #include "protocol/program/input_file.h"
 
@@ -74,10 +76,73 @@ BoxScene read_box(TableReader t) {
   return box;
 }
 
+using ViscosityModel = ViscosityScene::Model;
+
+/// Keys of the laws that a model has not.
+void refuse_other_keys(TableReader& t, ViscosityModel model) {
+  const bool newtonian = model == ViscosityModel::Newtonian || model == ViscosityModel::Smagorinsky;
+  const bool yields = model == ViscosityModel::Bingham || model == ViscosityModel::HerschelBulkley;
+  const bool carreau = model == ViscosityModel::Carreau;
+  const auto refuse = [&](bool known, std::initializer_list<const char*> keys) {
+    for (const char* key : keys)
+      if (!known && t.has(key))
+        t.fail(key, "has no meaning with model = \"" + name_of(model) + "\"", "leave it out");
+  };
+  refuse(!newtonian, {"nu_min", "nu_max", "shear_rate"});
+  refuse(!newtonian && !carreau, {"consistency"});
+  refuse(!newtonian && model != ViscosityModel::Bingham, {"index"});
+  refuse(yields, {"yield_stress", "regularisation"});
+  refuse(carreau, {"time_constant"});
+}
+
+ViscosityScene read_viscosity(TableReader t) {
+  ViscosityScene v;
+  std::vector<std::string> names;
+  for (const ViscosityModel model : known_viscosities()) names.push_back(name_of(model));
+  const std::string name = t.choice_or("model", names.front(), names);
+  v.model = known_viscosities()[std::ranges::find(names, name) - names.begin()];
+  refuse_other_keys(t, v.model);
+  const bool newtonian =
+      v.model == ViscosityModel::Newtonian || v.model == ViscosityModel::Smagorinsky;
+  const bool carreau = v.model == ViscosityModel::Carreau;
+  if (!newtonian && !carreau) v.consistency = t.number("consistency", Bounds::positive(), "Pa sⁿ");
+  if (!newtonian && v.model != ViscosityModel::Bingham) v.index = t.number("index", {0.1, 2.0}, "");
+  if (carreau) v.time_constant = t.number("time_constant", Bounds::positive(), "s");
+  if (v.model == ViscosityModel::Bingham || v.model == ViscosityModel::HerschelBulkley) {
+    v.yield_stress = t.number("yield_stress", Bounds::positive(), "Pa");
+    if (t.choice_or("regularisation", "bi_viscosity", {"bi_viscosity", "papanastasiou"}) !=
+        "bi_viscosity")
+      v.regularisation = ViscosityScene::Regularisation::Papanastasiou;
+  }
+  v.nu_min = t.optional_number("nu_min", Bounds::positive(), "m²/s");
+  v.nu_max = t.optional_number("nu_max", Bounds::positive(), "m²/s");
+  v.shear_rate = t.optional_number("shear_rate", Bounds::positive(), "1/s");
+  if (carreau && !(v.nu_min && v.nu_max))
+    t.fail(v.nu_min ? "nu_max" : "nu_min", "is missing",
+           "Carreau's law goes from nu_max at rest to nu_min at high shear rates");
+  if (v.nu_min && v.nu_max && *v.nu_min >= *v.nu_max)
+    t.fail("nu_min",
+           fmt::format("= {:.6g} m²/s is not below nu_max = {:.6g} m²/s", *v.nu_min, *v.nu_max),
+           "give nu_min < nu_max");
+  v.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
+  if (v.model == ViscosityModel::Smagorinsky && v.smagorinsky == 0.0)
+    t.fail("smagorinsky", "is missing or 0", "give the constant S_c, e.g. 0.1");
+  t.finish();
+  return v;
+}
+
 FluidScene read_fluid(TableReader t, int d) {
   FluidScene fluid;
   fluid.density = t.number("density", Bounds::positive(), "kg/m³");
-  fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
+  if (t.has("viscosity")) fluid.law = read_viscosity(t.table("viscosity"));
+  const bool newtonian = fluid.law.model == ViscosityModel::Newtonian ||
+                         fluid.law.model == ViscosityModel::Smagorinsky;
+  if (!newtonian && t.has("kinematic_viscosity"))
+    t.fail("kinematic_viscosity",
+           "stands beside a viscosity that depends on the shear rate, model = \"" +
+               name_of(fluid.law.model) + "\"",
+           "leave it out");
+  if (newtonian) fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
   fluid.gravity = t.vector_or_zero("gravity", d, "[m/s²]");
   fluid.body_force = t.vector_or_zero("body_force", d, "[m/s²]");
   fluid.body_force_ramp = t.number_or("body_force_ramp", 0.0, Bounds::non_negative(), "s");
@@ -221,25 +286,6 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box) {
   return b;
 }
 
-ObstacleScene read_obstacle(TableReader t, int d) {
-  ObstacleScene o;
-  o.round = t.has("centre");
-  if (o.round) {
-    o.centre = t.vector("centre", d, "[m]");
-    o.diameter = t.number("diameter", Bounds::positive(), "m");
-    o.hollow = t.flag_or("hollow", false);
-    if (d == 3)
-      o.spin = t.vector_or_zero("spin", 3, "[rad/s]");
-    else
-      o.spin.z() = t.number_or("spin", 0.0, {}, "rad/s");
-  } else {
-    o.from = t.vector("from", d, "[m], or centre and diameter of a disc or sphere");
-    o.to = t.vector("to", d, "[m]");
-  }
-  t.finish();
-  return o;
-}
-
 /// Discs or spheres at rest from a table `x,y,diameter` or `x,y,z,diameter` in m, beside the scene.
 void read_grains(TableReader t, const std::string& scene_file, int d,
                  std::vector<ObstacleScene>& obstacles) {
@@ -292,6 +338,19 @@ InitialScene read_initial(TableReader t, int d) {
   i.perturbation = t.number_or("perturbation", i.perturbation, Bounds::non_negative(), "");
   t.finish();
   return i;
+}
+
+/// What depends on more than one table: the viscosity at the typical shear rate, and the place of
+/// Smagorinsky's constant.
+void settle_viscosity(const TableReader& root, Scene& scene) {
+  ViscosityScene& law = scene.fluid.law;
+  double& constant = scene.numerics.smagorinsky;
+  if (law.smagorinsky > 0.0 && constant > 0.0)
+    root.fail("fluid.viscosity.smagorinsky", "stands beside numerics.smagorinsky",
+              "give one of them");
+  constant = std::max(constant, law.smagorinsky);
+  if (!law.shear_rate) law.shear_rate = typical_shear_rate(scene);
+  scene.fluid.viscosity = ViscosityLaw(scene.fluid, *law.shear_rate).reference();
 }
 
 std::string sensor_name(TableReader& t) {
@@ -380,9 +439,10 @@ Scene read_tables(const toml::table& merged, const std::vector<std::string>& fil
   for (const TableReader& t : root.tables("boundary"))
     scene.boundaries.push_back(read_boundary(t, scene.box));
   for (const TableReader& t : root.tables("obstacle"))
-    scene.obstacles.push_back(read_obstacle(t, d));
+    scene.obstacles.push_back(read_obstacle(t, files.front(), scene.box));
   read_grains(root.optional_table("grains"), files.front(), d, scene.obstacles);
   scene.initial = read_initial(root.optional_table("initial"), d);
+  settle_viscosity(root, scene);
   TableReader output = root.optional_table("output");
   scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
   scene.output.probe_every = output.number_or("probe_every", 0.0, Bounds::non_negative(), "s");

@@ -4,25 +4,10 @@
 #include <vector>
 
 #include "lbm_solver/immersed/body.h"
+#include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/solver/fluid.h"
 
 namespace lbm {
-
-/// Cells [from, to) of the box that are a wall at rest.
-struct CellBox {
-  Cell3 from{0, 0, 0}, to{0, 0, 1};
-
-  bool holds(const Cell3& c) const {
-    for (int a = 0; a < 3; ++a)
-      if (c[a] < from[a] || c[a] >= to[a]) return false;
-    return true;
-  }
-  Vec3 centre() const {
-    Vec3 middle;
-    for (int a = 0; a < 3; ++a) middle[a] = 0.5 * (from[a] + to[a]);
-    return middle;
-  }
-};
 
 /// Loads on walls inside the box by momentum balance: a wall's cell sends back all that arrives, so
 /// what arrives along c_q leaves it with twice its momentum,

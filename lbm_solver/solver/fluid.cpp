@@ -8,6 +8,7 @@
 
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/base/simd.h"
+#include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/immersed/solid_fraction.h"
 
@@ -29,7 +30,8 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
                        domain(), cells(), radius_shift(choice.solid_term, domain().dimension()))),
       medium_{choice.parameters, choice.local_viscosity(), cover_.get(),
               SolidShare(choice.solid_term, choice.weight, choice.parameters)},
-      two_steps_(load_lag(choice.solid_term, choice.parameters.tau)) {
+      two_steps_(load_lag(choice.solid_term, choice.parameters.tau)),
+      fixed_two_steps_(two_steps_) {
   if (!choice.force) {
     CollisionParameters& p = choice_.parameters;
     p.force_x = p.force_y = p.force_z = 0.0;
@@ -78,6 +80,14 @@ void Fluid::set_body_force() {
   if (scheme_) scheme_->set_body_force(body_force());
 }
 
+void Fluid::add(const Geometry& geometry) {
+  BPLBM_EXPECT(cover_ != nullptr);
+  cover_->add(geometry);
+  Body& body = fixed_.emplace_back();
+  body.id = static_cast<std::int64_t>(fixed_.size());
+  body.centre = geometry.centre();
+}
+
 void Fluid::place(std::span<const Body> bodies) {
   BPLBM_EXPECT(has_solids());
   remember_loads();
@@ -89,6 +99,7 @@ void Fluid::place(std::span<const Body> bodies) {
 void Fluid::remember_loads() {
   if (!two_steps_.on() || scheme_ || !loads_are_new_) return;
   two_steps_.remember(bodies_, cover_->loads());
+  if (!fixed_.empty()) fixed_two_steps_.remember(fixed_, cover_->fixed_loads());
   loads_are_new_ = false;
 }
 
@@ -96,6 +107,12 @@ std::vector<BodyLoad> Fluid::loads() const {
   if (bodies_.empty()) return {};
   if (!two_steps_.on() || scheme_) return momentary_loads();
   return two_steps_.mean(bodies_, cover_->loads(), domain(), cells());
+}
+
+std::vector<BodyLoad> Fluid::fixed_loads() const {
+  if (fixed_.empty()) return {};
+  if (!two_steps_.on()) return cover_->fixed_loads();
+  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells());
 }
 
 namespace {
@@ -157,7 +174,7 @@ void Fluid::sweep_and_exchange(EsotericPull& stream) {
 }
 
 void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
-  if (bodies_.empty()) return make_steps(steps, after_each);
+  if (bodies_.empty() && fixed_.empty()) return make_steps(steps, after_each);
   if (after_each) {  // all threads sum the loads of bodies, between two regions
     for (; steps > 0; --steps) {
       advance(1);
@@ -410,6 +427,11 @@ Record Fluid::save() const {
     TwoStepLoads last = two_steps_;
     if (loads_are_new_) last.remember(bodies_, cover_->loads());
     record.set("loads", last.save(*ranks_));
+    if (!fixed_.empty()) {
+      TwoStepLoads fixed = fixed_two_steps_;
+      if (loads_are_new_) fixed.remember(fixed_, cover_->fixed_loads());
+      record.set("fixed_loads", fixed.save(*ranks_));
+    }
   }
   return record;
 }
@@ -420,6 +442,7 @@ void Fluid::load(const Record& record) {
   if (scheme_) scheme_->load(record.part("scheme"));
   if (two_steps_.on()) {
     two_steps_.load(record.part("loads"));
+    if (!fixed_.empty()) fixed_two_steps_.load(record.part("fixed_loads"));
     loads_are_new_ = false;
   }
   const Cell3 n = cells().size, all = domain().cells();

@@ -55,6 +55,9 @@ class Fluid {
   }
   /// Cells [from, to) of the box become a wall at rest. Needs a solid term in the kernel's choice.
   void add_wall(const Cell3& from, const Cell3& to) { cover_->add_wall(from, to); }
+  /// A solid of any shape that stays where it is. Needs a solid term in the kernel's choice.
+  /// @throws std::invalid_argument  see fill()
+  void add(const Geometry& geometry);
 
   /// Solids act by a scheme of its own instead of covered cells (which walls keep). One rank only.
   void use(std::unique_ptr<BodyScheme> scheme) {
@@ -91,6 +94,8 @@ class Fluid {
   std::vector<BodyLoad> momentary_loads() const {
     return scheme_ ? scheme_->loads() : cover_->loads();
   }
+  /// Likewise on the solids that were added, about their centres, in their order.
+  std::vector<BodyLoad> fixed_loads() const;
   /// Part of a cell that solids cover, at most 1.
   double solid_fraction(int x, int y, int z = 0) const;
 
@@ -167,7 +172,8 @@ class Fluid {
   RowMedium medium_;
   std::unique_ptr<BodyScheme> scheme_;
   std::vector<Body> bodies_;  // as placed
-  TwoStepLoads two_steps_;
+  std::vector<Body> fixed_;   // that were added: their names and centres
+  TwoStepLoads two_steps_, fixed_two_steps_;
   bool loads_are_new_ = false;  // those in the map are of a step that two_steps_ does not know
   std::vector<std::unique_ptr<Patch>> patches_;
   std::int64_t steps_ = 0;

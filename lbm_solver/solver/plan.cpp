@@ -12,6 +12,7 @@
 #include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/expected_error.h"
 #include "lbm_solver/solver/scene_check.h"
+#include "lbm_solver/solver/viscosity_plan.h"
 
 namespace lbm {
 namespace {
@@ -147,11 +148,18 @@ void choose_solids(const Scene& s, Plan& plan) {
   KernelChoice& k = plan.kernel;
   k.solid_term = "none";
   const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                  [](const ObstacleScene& o) { return !o.round; });
+                                  [](const ObstacleScene& o) { return o.block(); });
+  const bool shapes = std::any_of(s.obstacles.begin(), s.obstacles.end(),
+                                  [](const ObstacleScene& o) { return o.mesh || o.image; });
   const bool spinning = std::any_of(s.obstacles.begin(), s.obstacles.end(),
                                     [](const ObstacleScene& o) { return !o.spin.isZero(0.0); });
   if (!s.coupling && s.obstacles.empty()) return;
   if (n.scheme != "auto" && n.scheme != name_of(plan.scheme)) {
+    if (shapes)
+      throw InputError(fmt::format("{}: numerics.scheme = \"{}\" knows discs, spheres and blocks, "
+                                   "no meshes and images",
+                                   s.file, n.scheme),
+                       "take scheme = \"immersed_moving_boundary\"");
     if (n.solid_term != "auto")
       throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
                        "leave it out, or take scheme = \"immersed_moving_boundary\"");
@@ -351,6 +359,7 @@ Plan make_plan(const Scene& s, std::optional<double> step) {
   choose_step(s, plan);
   fit_to_end(s, step, plan);
   choose_kernel(s, plan);
+  plan_viscosity(s, plan);
   judge_step(s, plan);
   expect_error(s, plan);
   if (s.coupling) choose_substeps(s, plan);

@@ -9,6 +9,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/boundary/patch.h"
+#include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/driven_speed.h"
 
@@ -23,6 +24,7 @@ constexpr double kMuchFaster = 30.0;    // than velocity_scale: grains resist, e
 constexpr double kLargeGrain = 0.2;     // m, in a coupled scene
 constexpr double kLargeReynolds = 1e5;  // of a cell
 constexpr double kThinObstacle = 4.0;   // cells
+constexpr double kTightLayer = 3.0;     // cells
 constexpr double kTouch = 1e-3;         // overlap over a diameter that rounding may make
 
 std::string place_text(const Scene& s, const Vec3& x) {
@@ -97,6 +99,7 @@ Vec3 apart(const Scene& s, const Vec3& a, const Vec3& b) {
 double depth_in(const Scene& s, const ObstacleScene& o, const Vec3& x, double r) {
   if (o.round && o.hollow) return (apart(s, o.centre, x).norm() + r - 0.5 * o.diameter) / (2.0 * r);
   if (o.round) return (0.5 * o.diameter + r - apart(s, o.centre, x).norm()) / (2.0 * r);
+  if (!o.block()) return 0.0;  // of a mesh or an image the cells know
   Vec3 outside = Vec3::Zero();
   for (int k = 0; k < s.box.dimension; ++k)
     outside[k] = std::max({o.from[k] - x[k], x[k] - o.to[k], 0.0});
@@ -155,7 +158,7 @@ void check_sensors(const Scene& s) {
 }
 
 void check_obstacle(const Scene& s, const ObstacleScene& o) {
-  if (!o.round) return;  // blocks are checked with their cells
+  if (!o.round) return;  // blocks and images are checked with their cells, meshes when read
   for (int k = 0; k < s.box.dimension; ++k) {
     const double lo = s.box.origin[k], hi = lo + s.box.size[k], r = 0.5 * o.diameter;
     if (o.centre[k] + r <= lo || o.centre[k] - r >= hi)
@@ -174,6 +177,8 @@ Range extent(const Scene& s, const BoundaryScene& b, int k) {
   return {b.from[k].value_or(lo), b.to[k].value_or(lo + s.box.size[axis])};
 }
 
+constexpr const char* kSideNames[] = {"left", "right", "bottom", "top", "back", "front"};
+
 void check_boundaries(const Scene& s) {
   for (std::size_t i = 0; i < s.boundaries.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -184,10 +189,10 @@ void check_boundaries(const Scene& s) {
         shared = shared && std::min(first.hi, second.hi) > std::max(first.lo, second.lo);
       }
       if (shared)
-        throw InputError(
-            s.file + ": boundary",
-            fmt::format("the {}. and the {}. lie on the same part of a side", j + 1, i + 1),
-            "part them with from and to, or leave one out");
+        throw InputError(s.file,
+                         fmt::format("boundaries {} and {} overlap on side \"{}\"", j + 1, i + 1,
+                                     kSideNames[static_cast<int>(a.side)]),
+                         "part them with from and to, or leave one out");
     }
 }
 
@@ -300,8 +305,14 @@ void check_sizes(const Scene& s, Plan& plan) {
                     "flow of its own; are lengths in metres and the viscosity in m²/s?",
                     plan.reynolds_cell));
   for (const ObstacleScene& o : s.obstacles) {
+    if (const double cells = o.mesh ? o.mesh->thickness / plan.units.dx : 0.0;
+        cells > 0.0 && cells < kTightLayer)
+      plan.warnings.push_back(fmt::format(
+          "obstacle.thickness = {:.4g} m is {:.3g} cells: fluid seeps through a layer of "
+          "less than {}, where no cell is covered whole",
+          o.mesh->thickness, cells, kTightLayer));
     double width = o.diameter;
-    if (!o.round) width = (o.to - o.from).head(s.box.dimension).minCoeff();
+    if (o.block()) width = (o.to - o.from).head(s.box.dimension).minCoeff();
     if (o.grain || o.hollow || !o.round || width >= kThinObstacle * plan.units.dx) continue;
     plan.warnings.push_back(
         fmt::format("the obstacle at {} is {:.2g} cells wide: the flow past it is not resolved; "
@@ -327,7 +338,8 @@ void check_overlaps(const Scene& s, Plan& plan) {
 void check_viscosity(const Scene& s, Plan& plan) {
   if (s.fluid.viscosity > kThick)
     plan.warnings.push_back(fmt::format(
-        "fluid.kinematic_viscosity = {:.3g} m²/s is that of tar (water: 1e-6): is its unit right?",
+        "fluid.kinematic_viscosity = {:.3g} m²/s is unusually large for a liquid (water: 1e-6); "
+        "kinematic viscosity is in m²/s",
         s.fluid.viscosity));
 }
 
@@ -381,6 +393,27 @@ void check_carried_weight(const Scene& s) {
                      "leave one of them out");
 }
 
+/// Particles that the scene starts with their centres in a mesh or an image.
+void check_starts_in_shapes(const Scene& s, const Plan& plan) {
+  if (!s.particles || s.particles->start.empty()) return;
+  for (const Geometry& shape : obstacle_shapes(s, plan))
+    for (const Vec3& x : s.particles->start) {
+      const Vec3 at = plan.units.to_lattice_position(x);
+      Block cell = Block::whole(plan.domain);
+      for (int k = 0; k < 3; ++k) {
+        cell.begin[k] = std::clamp(static_cast<int>(at[k]), 0, plan.domain.cells()[k] - 1);
+        cell.size[k] = 1;
+      }
+      double fraction = 0.0;
+      fill(shape, plan.domain, cell, {},
+           [&](const FractionSpan& span) { fraction += span.fractions.front(); });
+      if (fraction > 0.5)
+        throw InputError(s.file + ": particles.start",
+                         place_text(s, x) + " lies in an obstacle's mesh or image",
+                         "move the particle or the obstacle");
+    }
+}
+
 }  // namespace
 
 void check_places(const Scene& s) {
@@ -403,6 +436,7 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_sizes(s, plan);
   check_idle_keys(s, plan);
   check_overlaps(s, plan);
+  check_starts_in_shapes(s, plan);
   if (s.coupling) check_gravity(s, plan);
   if (s.coupling) check_viscosity(s, plan);
   if (s.coupling) check_contacts(s, plan);

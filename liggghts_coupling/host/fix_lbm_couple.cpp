@@ -13,8 +13,8 @@
 #include <cstdlib>
 
 #include "liggghts_coupling/bond/bond_book.h"
-#include "liggghts_coupling/host/couple_arguments.h"
 #include "liggghts_coupling/host/coupling.h"
+#include "liggghts_coupling/host/fix_lbm_couple_arguments.h"
 #include "liggghts_coupling/host/script_checks.h"
 #include "liggghts_coupling/host/solid_hello.h"
 #include "protocol/program/watch.h"

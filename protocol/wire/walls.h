@@ -12,4 +12,7 @@ namespace protocol {
 /// side does not say what walls it has.
 std::vector<std::string> one_sided_walls(const Hello& fluid, const Hello& solid);
 
+/// A mesh among Hello::bodies, by the box around it: two that read the same are one wall.
+std::string mesh_text(const Vec3& low, const Vec3& high);
+
 }  // namespace protocol

@@ -12,8 +12,7 @@
 namespace {
 
 const std::string kDisc = BPLBM_SOURCE_DIR "/cases/settling_disc/scene.toml";
-constexpr const char* kShort =
-    "[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.2\nprobes_every = 0.01\n";
+constexpr const char* kShort = "[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.2\n";
 constexpr const char* kOnTheGround =
     "[particles]\nstart = [[0.01, 0.005]]\n[numerics]\ncells_per_diameter = 10\n"
     "[run]\nend_time = 0.3\ncheckpoint_every = 0.1\n";
@@ -81,14 +80,7 @@ TEST_P(CEngine, GoesOnFromACheckpointToTheBit) {
   ASSERT_EQ(run("--out parts --until 0.25").exit_code, 0);
   ASSERT_EQ(run("--out parts --restart").exit_code, 0);
   EXPECT_EQ(probes("parts"), probes("whole"));
-  EXPECT_EQ(rows(probes("whole")).size(), rows(probes("parts")).size());
-}
-
-TEST_P(CEngine, AnotherBoxIsRefusedOnBothSides) {
-  folder_.write("overlay.toml", std::string(kShort) + "[particles.variables]\nwalls_x = \"0\"\n");
-  const auto job = run("--out out");
-  EXPECT_FALSE(job.timed_out);
-  EXPECT_EQ(job.exit_code, 2) << job.output;
+  EXPECT_GT(rows(probes("whole")).size(), 100U);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CEngine, testing::ValuesIn(engines()),

@@ -34,6 +34,13 @@ class Documents(unittest.TestCase):
         self.assertIn("there is no lbm_solver/nothing.h", " ".join(documents.lost_files(README, "`lbm_solver/nothing.h`")))
         self.assertEqual(list(documents.lost_files(README, "`lbm_solver/solver/fluid` `lbm_solver/solver/kernel_NAME.cpp`")), [])
 
+    def test_wide_paragraphs_are_filled_anew(self):
+        word = "w" * 50
+        text = f"# H\n\n- {word} {word} `a b`\n  {word}\n- short\n\n```\n{word * 3}\n```\n| {word * 3} |\n"
+        self.assertEqual(documents.wrapped(text), text)
+        wide = text.replace("`a b`", "`a b` then some more")
+        self.assertEqual(documents.wrapped(wide), wide.replace(" then some more\n ", " then some\n  more"))
+
     def test_a_citation_that_is_in_no_bibliography_is_found(self):
         cited = " ".join(documents.unknown_citations(set()))
         for tag in ("Ladd1994", "NobleTorczynski1998", "PotyondyCundall2004", "DeRosis2016"):

@@ -74,6 +74,45 @@ def wide_lines(path, text):
             yield f"{name(path)}:{number}: {len(line)} characters, more than {WIDEST}"
 
 
+ITEM = re.compile(r"\s*(?:[-*] |\d+\. )?")
+
+
+def filled(paragraph):
+    """A paragraph or an item of a list, its words anew in lines of at most the width; code in backquotes stays whole."""
+    mark = ITEM.match(paragraph[0])[0]
+    words = re.findall(r"(?:[^\s`]*`[^`]*`[^\s`]*)+|\S+", " ".join([paragraph[0][len(mark):], *paragraph[1:]]))
+    lines, line = [], mark + words[0]
+    for word in words[1:]:
+        if len(line) + 1 + len(word) > WIDEST:
+            lines.append(line)
+            line = " " * len(mark) + word
+        else:
+            line += " " + word
+    return [*lines, line]
+
+
+def wrapped(text):
+    """A document whose paragraphs with too wide a line are filled anew."""
+    lines, paragraph, code = [], [], False
+
+    def end():
+        lines.extend(filled(paragraph) if any(len(line) > WIDEST for line in paragraph) else paragraph)
+        paragraph.clear()
+
+    for line in text.split("\n"):
+        fence = line.lstrip().startswith("```")
+        code = code != fence
+        if code or fence or not line.strip() or line.lstrip().startswith(("|", "#", "<", "![")):
+            end()
+            lines.append(line)
+            continue
+        if ITEM.match(line)[0].strip():
+            end()
+        paragraph.append(line)
+    end()
+    return "\n".join(lines)
+
+
 def lost_files(path, text):
     """Files that a recipe or a table names by their path from the root."""
     for number, line in prose(text):
@@ -114,6 +153,11 @@ def complaints():
 
 
 def main():
+    if sys.argv[1:] == ["--wrap"]:
+        for path in tracked("*.md"):
+            text = path.read_text()
+            if list(wide_lines(path, text)):
+                path.write_text(wrapped(text))
     found = list(complaints())
     print("\n".join(found) or f"check | {len(tracked('*.md'))} documents hold together")
     return 1 if found else 0

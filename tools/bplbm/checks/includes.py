@@ -15,9 +15,9 @@ LBM = {
     "viscosity": {"base", "lattice", "collision"},
     "boundary": {"base", "lattice", "field", "collision"},
     "immersed": {"base", "lattice", "field", "collision"},
-    "io": {"base", "field"},
+    "io": {"base", "field", "viscosity"},
     "solver": {"base", "lattice", "field", "collision", "viscosity", "boundary", "immersed"},
-    "coupling": {"base", "lattice", "field", "collision", "boundary", "immersed", "solver", "io"},
+    "coupling": {"base", "lattice", "field", "collision", "viscosity", "boundary", "immersed", "solver", "io"},
     "main.cpp": {"base", "lattice", "field", "collision", "immersed", "solver", "io", "coupling"},
 }
 # The same of protocol/; its main programs may use all of them.
@@ -26,7 +26,7 @@ PROTOCOL = {"wire": set(), "program": {"wire"}, "transport": {"wire", "program"}
 # Library header (prefix) -> files that may use it.
 ONLY = {
     "mpi.h": r"protocol/(transport/mpi_channel|program/(mpi_calls|program)|solid/).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
-    "hdf5": r"protocol/transport/(hdf5_file|trace).*|lbm_solver/io/field_writer\.cpp",
+    "hdf5": r"protocol/transport/(hdf5_file|trace).*|lbm_solver/io/(field_writer|image_file)\.cpp",
     "lammps": r"liggghts_coupling/(host|bond)/.*",
     "atom.h": r"liggghts_coupling/(host|bond)/.*",
     "fix.h": r"liggghts_coupling/(host|bond)/.*",

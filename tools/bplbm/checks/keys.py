@@ -38,7 +38,7 @@ def first_column(text):
 
 
 def scene_keys():
-    return found(CALL, read("lbm_solver/io/scene_reader.cpp")), \
+    return found(CALL, read("lbm_solver/io/scene_reader.cpp") + read("lbm_solver/io/obstacle_reader.cpp")), \
         first_column(section(SCENE, "## Keys of a scene")) - {"NAME"}
 
 
@@ -61,7 +61,8 @@ def commands():
 
 def words_of_commands():
     """Their words, each followed by a value."""
-    files = [*(ROOT / "liggghts_coupling").glob("*/fix_*.cpp"), ROOT / "liggghts_coupling/bond/pair_bond.cpp"]
+    files = [*(ROOT / "liggghts_coupling").glob("*/fix_*.cpp"), ROOT / "liggghts_coupling/host/couple_arguments.cpp",
+             ROOT / "liggghts_coupling/bond/pair_bond.cpp"]
     code = {word for file in files for word in found(WORD, file.read_text())}
     return code, found(r"(?<![\w/])([a-z]+) (?=[A-Z\d]|on\b)", synopses()) - {"fix"}
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "liggghts_coupling/host/couple_arguments.h"
+#include "liggghts_coupling/host/fix_lbm_couple_arguments.h"
 
 #include "protocol/wire/numbers.h"
 

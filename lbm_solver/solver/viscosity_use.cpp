@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/solver/viscosity_use.h"
+
+#include <algorithm>
+
+namespace lbm {
+namespace {
+
+/// What the table wants of a cell: 2 Q_ab Q_ab / rho², without Q's trace.
+double stress_of(const Fluid& fluid, int x, int y, int z) {
+  const Lattice& l = fluid.lattice();
+  const auto [rho, u] = fluid.cell(x, y, z);
+  const Vec3 force = fluid.body_force();
+  double q[3][3] = {}, trace = 0.0, squares = 0.0;
+  for (int i = 1; i < l.Q; ++i) {
+    const double population = fluid.arriving(i, x, y, z);
+    for (int a = 0; a < l.D; ++a)
+      for (int b = 0; b < l.D; ++b) q[a][b] += population * l.c[i][a] * l.c[i][b];
+  }
+  for (int a = 0; a < l.D; ++a) {
+    q[a][a] -= (rho - 1.0) / 3.0;
+    for (int b = 0; b < l.D; ++b)
+      q[a][b] += 0.5 * (force[a] * u[b] + u[a] * force[b]) - rho * u[a] * u[b];
+    trace += q[a][a];
+  }
+  for (int a = 0; a < l.D; ++a) {
+    q[a][a] -= trace / l.D;
+    for (int b = 0; b < l.D; ++b) squares += q[a][b] * q[a][b];
+  }
+  return 2.0 * squares / (rho * rho);
+}
+
+}  // namespace
+
+ViscosityUse viscosity_use(const Fluid& fluid, const RelaxationTable& table) {
+  const Cell3& n = fluid.cells().size;
+  double sums[4] = {0.0, 0.0, 0.0, 0.0}, largest = 0.0;  // cells, at either bound, viscosities
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        if (fluid.cover() && fluid.cover()->solid_fraction(x, y, z) >= kWhole) continue;
+        const double stress = stress_of(fluid, x, y, z);
+        sums[0] += 1.0;
+        sums[1] += stress <= table.lowest();
+        sums[2] += stress >= table.highest();
+        sums[3] += (1.0 / table(stress) - 0.5) / 3.0;
+        largest = std::max(largest, table.shear_rate(stress));
+      }
+  fluid.ranks().sum(sums);
+  const double cells = std::max(1.0, sums[0]);
+  return {.at_rest_bound = sums[1] / cells,
+          .at_shear_bound = sums[2] / cells,
+          .largest_shear = fluid.ranks().max(largest),
+          .mean_viscosity = sums[3] / cells};
+}
+
+}  // namespace lbm

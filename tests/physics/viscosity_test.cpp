@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Viscosities that depend on the shear rate, against exact solutions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lbm_solver/solver/viscosity_use.h"
+#include "lbm_solver/viscosity/viscosity_law.h"
+#include "tests/support/openings.h"
+
+namespace {
+
+using namespace lbm;
+using std::numbers::pi;
+using Regularisation = ViscosityScene::Regularisation;
+
+/// A Herschel–Bulkley fluid in lattice units, density 1, between nu_w/span and nu_w span, where
+/// nu_w is the viscosity at a shear rate of the flow.
+struct Gel {
+  double index = 1.0, yield_part = 0.0;  ///< σ_y over the stress at that shear rate
+  double span = 100.0;
+  Regularisation regularisation = Regularisation::BiViscosity;
+
+  ViscosityLaw law(double tau, double shear_rate) const {
+    const double nu = (tau - 0.5) / 3.0, stress = nu * shear_rate;
+    FluidScene fluid{.density = 1.0};
+    fluid.law = {.model = ViscosityScene::Model::HerschelBulkley,
+                 .consistency = (1.0 - yield_part) * stress / std::pow(shear_rate, index),
+                 .index = index,
+                 .yield_stress = yield_part * stress,
+                 .nu_min = nu / span,
+                 .nu_max = nu * span,
+                 .regularisation = regularisation};
+    return {fluid, shear_rate};
+  }
+  /// Shear rate of the fluid without bounds at a stress, in units of those it was made for.
+  double shear_rate(double stress) const {
+    return stress > yield_part ? std::pow((stress - yield_part) / (1.0 - yield_part), 1.0 / index)
+                               : 0.0;
+  }
+};
+
+CollisionParameters parameters(const ViscosityLaw& law, double tau, double force = 0.0) {
+  CollisionParameters p{.tau = tau, .force_x = force};
+  p.viscosity_table =
+      std::make_shared<RelaxationTable>([law](double rate) { return 0.5 + 3.0 * law(rate); });
+  return p;
+}
+
+/// Runs until a number changes by less than 1e-7 in 1000 steps; at most `most` steps.
+template <class Number>
+double settled(Fluid& fluid, int most, const Number& number) {
+  double before = number();
+  for (int step = 0; step < most; step += 1000) {
+    fluid.advance(1000);
+    const double now = number();
+    if (std::abs(now - before) < 1e-7 * std::abs(now)) return now;
+    before = now;
+  }
+  return before;
+}
+
+struct Channel {
+  double error;     ///< of the flow rate
+  double plug;      ///< width of what is not sheared, over the channel's
+  double at_bound;  ///< share of cells at nu_max
+};
+
+/// A channel of some cells under a body force, whose walls have τ = 1.
+Channel plane_channel(const Gel& gel, int height) {
+  constexpr double tau = 1.0;
+  const double wall_rate = 2.56 / (height * height);  // diffusive scaling
+  const ViscosityLaw law = gel.law(tau, wall_rate);
+  const double wall_stress = (tau - 0.5) / 3.0 * wall_rate, half = 0.5 * height;
+  Fluid fluid({8, height, Side::Periodic, Side::Wall},
+              {.force = true, .parameters = parameters(law, tau, wall_stress / half)});
+  // Q = 2 ∫ y γ̇(y) dy from the middle to the wall, and the profile to begin with
+  constexpr int parts = 20000;
+  const auto rate_at = [&](double y) { return wall_rate * gel.shear_rate(y / half); };
+  double exact = 0.0, speed = 0.0;
+  std::vector<double> start(static_cast<std::size_t>(height));
+  for (int i = parts - 1; i >= 0; --i) {
+    const double y = (i + 0.5) * half / parts, step = half / parts;
+    exact += 2.0 * y * rate_at(y) * step;
+    speed += rate_at(y) * step;
+    for (const double sign : {-1.0, 1.0})
+      start[static_cast<std::size_t>(std::clamp(half + sign * y, 0.0, height - 1.0))] = speed;
+  }
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < 8; ++x) fluid.set_equilibrium(x, y, 1.0, {start[y], 0.0});
+  const double flow = settled(fluid, 60000, [&] {
+    double sum = 0.0;
+    for (int y = 0; y < height; ++y) sum += fluid.cell(3, y).u.x();
+    return sum;
+  });
+  int still = 0;
+  for (int y = 1; y < height; ++y)
+    still += std::abs(fluid.cell(3, y).u.x() - fluid.cell(3, y - 1).u.x()) < 0.02 * wall_rate;
+  return {flow / exact - 1.0, static_cast<double>(still) / height,
+          viscosity_use(fluid, *parameters(law, tau).viscosity_table).at_rest_bound};
+}
+
+// Second order in the cell; 1 % at 32 cells is what is asked for, 0.25 % what is there. With n =
+// 0.5 and 0.8 errors of both signs add up, so that only the fluid that is farthest off shows its
+// order.
+TEST(PlanePoiseuille, PowerLawFlowRates) {
+  for (const double n : {0.5, 0.8, 1.5}) {
+    const double coarse = plane_channel({.index = n}, 16).error,
+                 fine = plane_channel({.index = n}, 32).error;
+    EXPECT_LT(std::abs(fine), 0.0025) << "n = " << n;
+    EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.3) << "n = " << n;
+  }
+}
+
+TEST(PlanePoiseuille, BinghamAndHerschelBulkleyFlowRatesAndPlug) {
+  for (const double n : {1.0, 0.5}) {
+    const Channel flow = plane_channel({.index = n, .yield_part = 0.5}, 32);
+    EXPECT_LT(std::abs(flow.error), 0.005) << "n = " << n;
+    // half of the channel is a plug; a stiff cell more or less on either side, more for n = 0.5,
+    // where the shear rate grows slowly from the plug's edge
+    EXPECT_NEAR(flow.plug, 0.5, n == 1.0 ? 2.1 / 32 : 6.1 / 32) << "n = " << n;
+    EXPECT_NEAR(flow.at_bound, 0.5, 2.1 / 32) << "n = " << n;
+  }
+}
+
+// What creeps below the yield stress adds to the flow: in proportion to 1/nu_max. At the same bound
+// Papanastasiou's law, which is softer above it too, is three times as far off.
+TEST(PlanePoiseuille, RegularisationAddsToTheFlowInProportionToItsBound) {
+  const auto error = [](double span, Regularisation kind) {
+    return plane_channel({.yield_part = 0.5, .span = span, .regularisation = kind}, 32).error;
+  };
+  const double bi = error(100.0, Regularisation::BiViscosity),
+               soft = error(100.0, Regularisation::Papanastasiou),
+               limit = error(1000.0, Regularisation::BiViscosity),
+               soft_limit = error(1000.0, Regularisation::Papanastasiou);
+  EXPECT_GT(soft - soft_limit, 1.5 * (bi - limit));
+  EXPECT_GT(bi - limit, 5e-4);
+  EXPECT_LT(soft, 0.005);
+  EXPECT_LT(std::abs(limit), 0.002);
+}
+
+// Uniform shear: every cell has the same viscosity, so the profile is straight and the walls do not
+// slip; the wall's stress is that of the law.
+TEST(PlaneCouette, IsStraightWithoutSlipInEveryFluid) {
+  constexpr int n = 12;
+  constexpr double tau = 0.8, lid = 0.02, rate = lid / n;
+  for (const Gel& gel :
+       {Gel{.index = 0.5}, Gel{.index = 1.5}, Gel{.index = 1.0, .yield_part = 0.7}}) {
+    Fluid fluid({8, n, Side::Periodic, Side::Wall},
+                {.parameters = parameters(gel.law(tau, rate), tau)});
+    test::add_velocity(fluid, Opening::whole(fluid.domain(), SideName::Top), {lid, 0.0});
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < 8; ++x) fluid.set_equilibrium(x, y, 1.0, {rate * (y + 0.5), 0.0});
+    fluid.advance(8000);
+    for (int y = 0; y < n; ++y)
+      EXPECT_NEAR(fluid.cell(3, y).u.x() / lid, (y + 0.5) / n, 2e-4) << gel.index << ' ' << y;
+    const auto& table = *parameters(gel.law(tau, rate), tau).viscosity_table;
+    EXPECT_NEAR(viscosity_use(fluid, table).largest_shear / rate, 1.0, 2e-3) << gel.index;
+    EXPECT_NEAR(viscosity_use(fluid, table).mean_viscosity * 3.0 / (tau - 0.5), 1.0, 3e-3)
+        << gel.index;
+  }
+}
+
+/// Torque on the inner one of two cylinders, over that of the exact solution
+///   ω = (T/2πK)^{1/n} (n/2) (R₁^{-2/n} - R₂^{-2/n})
+double taylor_couette(double index, double inner, double outer) {
+  constexpr double tau = 1.0;
+  const int size = 2 * static_cast<int>(std::ceil(outer)) + 6;
+  const double surface_rate = 0.0015, nu = (tau - 0.5) / 3.0;  // at the inner cylinder
+  const Gel gel{.index = index};
+  Fluid fluid({size, size}, {.solid_term = "resistance",
+                             .parameters = parameters(gel.law(tau, surface_rate), tau)});
+  const double exact = 2.0 * pi * inner * inner * nu * surface_rate;
+  const double spin = surface_rate * 0.5 * index * (1.0 - std::pow(inner / outer, 2.0 / index));
+  const Vec3 centre(0.5 * size + 0.137, 0.5 * size - 0.211);
+  const std::vector<Body> cylinders{{1, centre, inner, Vec3(), Spin(spin)},
+                                    {2, centre, outer, Vec3(), Spin(), true}};
+  fluid.place(cylinders);
+  return settled(fluid, 12000, [&] { return -fluid.loads()[0].torque.z(); }) / exact;
+}
+
+TEST(TaylorCouette, TorqueOfAPowerLawFluid) {
+  for (const double n : {0.5, 0.8, 1.5}) EXPECT_NEAR(taylor_couette(n, 10.0, 20.0), 1.0, 0.02) << n;
+}
+
+}  // namespace
