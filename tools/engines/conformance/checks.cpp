@@ -228,12 +228,12 @@ std::vector<std::string> shake_hands(Judge& judge, const Answer& mine) {
   Channel& channel = judge.channel();
   const Bytes hello = encode(judge.part(judge.hello({}))), answer = encode(mine);
   const int solids = channel.remote_size();
-  for (int r = 0; r < solids; ++r) channel.send(r, hello, {8.0, "its mail box"});
-  for (int r = 0; r < solids; ++r) decode<Hello>(channel.receive(r, {8.0, "its handshake"}));
-  for (int r = 0; r < solids; ++r) channel.send(r, answer, {8.0, "its mail box"});
+  for (int r = 0; r < solids; ++r) channel.send(r, hello, {kPatience, "its mail box"});
+  for (int r = 0; r < solids; ++r) decode<Hello>(channel.receive(r, {kPatience, "its handshake"}));
+  for (int r = 0; r < solids; ++r) channel.send(r, answer, {kPatience, "its mail box"});
   std::vector<std::string> reasons;
   for (int r = 0; r < solids; ++r)
-    for (const auto& reason : decode<Answer>(channel.receive(r, {8.0, "its answer"})).reasons)
+    for (const auto& reason : decode<Answer>(channel.receive(r, {kPatience, "its answer"})).reasons)
       reasons.push_back(reason);
   return reasons;
 }
@@ -243,7 +243,8 @@ void fail(Judge& judge) {
   expect_passes([&] { shake_hands(judge, {}); });
   Channel& channel = judge.channel();
   for (int r = 0; r < channel.remote_size(); ++r) {
-    const auto states = decode<StateBatch>(channel.receive(r, {8.0, "the states of interval 0"}));
+    const auto states =
+        decode<StateBatch>(channel.receive(r, {kPatience, "the states of interval 0"}));
     LoadBatch loads{{0, 0.0, kContinue}, {}};
     for (const State& s : states.states) {
       loads.loads.push_back({s.id, {}, {}});

@@ -16,8 +16,7 @@ using namespace protocol;
 
 namespace {
 
-constexpr double kPatience = 20.0;  // with an engine [s]
-constexpr double kReach = 0.01;     // of the fluid beyond a particle [m]
+constexpr double kReach = 0.01;  // of the fluid beyond a particle [m]
 
 class Offer {
  public:

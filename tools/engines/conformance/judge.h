@@ -20,6 +20,7 @@ namespace conformance {
 
 inline constexpr double kInterval = 1e-2;  ///< [s]
 inline constexpr double kRadius = 0.05;    ///< [m]
+inline constexpr double kPatience = 20.0;  ///< with an engine that must answer [s]
 
 /// What an engine has done wrong.
 struct Wrong : std::runtime_error {
