@@ -13,7 +13,7 @@ LONGEST = 60  # lines of a room's README
 BIBLIOGRAPHY = "lbm_solver/docs/bibliography.md"
 ROOMS = ("lbm_solver", "liggghts_coupling", "protocol", "tools", "tests")
 # Folders that hold data of the room above, and READMEs that are a text of their own.
-DATA = re.compile(r"tests/(fuzz/corpus|hard/|support/stopped)|tools/bplbm/templates/|protocol/python/bplbm_solid")
+DATA = re.compile(r"tests/(fuzz/corpus|unit/lbm_solver/pictures|hard/|support/stopped)|tools/bplbm/templates/|protocol/python/bplbm_solid")
 LONG = {"protocol/README.md", "protocol/python/README.md"}  # the text of the wire, and the page of a package
 WRITTEN_BY_TOOLS = re.compile(r"cases/report/")
 TAG = re.compile(r"(?<![\w`])\[(?:after |see )?([A-Z]?[a-z]*[A-Z][A-Za-z]+(?:19|20)\d\d"
