@@ -60,8 +60,8 @@ class Fluid {
     scheme_ = std::move(scheme);
     scheme_->set_body_force(body_force());
   }
-  /// The body force of the kernel's choice comes up as `in_time` says.
-  void ramp_body_force(const InTime& in_time);
+  /// The body force of the kernel's choice changes in time as `in_time` says.
+  void vary_body_force(const InTime& in_time);
   /// On a cell in the coming step.
   Vec3 body_force() const;
   /// To be called after the last wall was added.
