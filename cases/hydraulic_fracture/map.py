@@ -1,13 +1,14 @@
 """The regime map of hydraulic_fracture: three packings of each strength and each leak-off. Usage: map.py OUT_FOLDER
 
-Runs what is missing in OUT_FOLDER (48 runs of some ten seconds), and writes map.csv and map.png there. Needs built programs,
-and tools/ in PYTHONPATH.
+Runs what is missing in OUT_FOLDER, 48 runs of ten seconds to half a minute, one after the other, and says how long each
+took; writes map.csv and map.png there. May be stopped and called again. Needs built programs, and tools/ in PYTHONPATH.
 """
 
 import json
 import pathlib
 import subprocess
 import sys
+import time
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -23,8 +24,10 @@ def run_point(out, strength, ratio, seed):
     """Quantities of a run by name; runs it where that was not done."""
     folder = out / f"strength{strength}-ratio{ratio}-seed{seed}"
     if not (folder / "animation.gif").exists():
+        begin = time.monotonic()
         subprocess.run(["/usr/bin/python3", ROOT / "tools/launch.py", "hydraulic_fracture", "--strength", strength, "--ratio",
                         ratio, "--seed", seed, "--out", folder, "--force"], check=True, stdout=subprocess.DEVNULL)
+        print(f"map | strength {strength} N, ratio {ratio}, seed {seed}: {time.monotonic() - begin:.0f} s", flush=True)
     return {q["name"]: q["value"] for q in json.loads((folder / "summary.json").read_text())["quantities"]}
 
 

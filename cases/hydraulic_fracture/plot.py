@@ -4,7 +4,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from bplbm import Run, animate, draw_bonds, draw_speed, quantity, read_breaks, result, studies, write_table
+from bplbm import Run, animate, draw_bonds, draw_speed, quantity, read_breaks, read_table, result, studies, write_table
 from bplbm.cracks import BondGraph, openings
 from bplbm.pores import cavity, pressure_at
 
@@ -59,6 +59,21 @@ class Fracture:
         places = dict(zip(particles[:, 0].astype(int), particles[:, 1:3]))
         return openings(places, self.radii, self.breaks["pair"][crack])
 
+    def inflow(self, frame):
+        """Through the inlet: volume a time [m³/s, 1 m deep], and the work that its pressure does [W]."""
+        cell = self.run.parameters["cell"]
+        rows = slice(round(INLET[0] / cell), round(INLET[1] / cell))
+        flux = np.nan_to_num(frame["velocity"][rows, 0, 0]) * cell
+        return flux.sum(), (flux * np.nan_to_num(frame["pressure"][rows, 0])).sum()
+
+    def energies(self, times):
+        """Of the bonds and contacts at times [s], from the coming of the water on: dict of arrays [J]."""
+        table = read_table(self.run.folder / "energy.csv")  # a restart adds a row of nan, and repeats what came after it
+        rows = np.flatnonzero(np.isfinite(table["time"]))
+        rows = rows[len(rows) - 1 - np.unique(table["time"][rows][::-1], return_index=True)[1]]
+        return {f"{key}_energy": np.interp(times, table["time"][rows], table[key][rows] - table[key][rows[0]])
+                for key in ("elastic", "friction", "damping", "released")}
+
     def history(self):
         """Columns against time, one row a frame."""
         rows = []
@@ -72,8 +87,18 @@ class Fracture:
                          "bonds_of_the_crack": len(crack), "length": length, "height": height,
                          "aperture": gaps.mean() if len(gaps) else 0.0,
                          "pressure_in_the_crack": pressure_at(self.run, frame, self.place[crack]),
-                         "cavity": cavity(self.run, frame, INLET)})
-        return {key: np.array([row[key] for row in rows]) for key in rows[0]}
+                         "cavity": cavity(self.run, frame, INLET),
+                         "crack_volume": gaps.sum() * 2 * np.mean(list(self.radii.values())),
+                         "inflow": self.inflow(frame)[0], "power": self.inflow(frame)[1]})
+        table = {key: np.array([row[key] for row in rows]) for key in rows[0]}
+        table["water_in"], table["work_of_the_inflow"] = (summed(table["time"], table.pop(key)) for key in ("inflow", "power"))
+        table["leak_off"] = table["water_in"] - table["crack_volume"]
+        return table | self.energies(table["time"])
+
+
+def summed(time, rate):
+    """Integral of a rate from the first time on, by the trapezoidal rule."""
+    return np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time))])
 
 
 def graph_of(run, frames):
@@ -129,6 +154,11 @@ def quantities(fracture, history):
             quantity("pressure in the crack", history["pressure_in_the_crack"][-1], "Pa"),
             quantity("pressure in the notch", pressures(fracture)[0], "Pa"),
             quantity("pressure in the ground", pressures(fracture)[1], "Pa"),
+            *(quantity(name, history[key][-1], unit) for name, key, unit in (
+                ("water pressed in, a metre of depth", "water_in", "m³"), ("of it leaked off", "leak_off", "m³"),
+                ("work of the inflow", "work_of_the_inflow", "J"), ("elastic energy gained", "elastic_energy", "J"),
+                ("energy released by breaking bonds", "released_energy", "J"),
+                ("energy lost to friction", "friction_energy", "J"), ("energy lost to damping", "damping_energy", "J"))),
             quantity("wide cavity at the inlet", history["cavity"][-1], "m²"),
             quantity("Ma = u/c_s", fracture.run.summary["ma_max"], "1")]
 

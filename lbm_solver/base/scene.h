@@ -6,13 +6,16 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lbm_solver/base/side.h"
+#include "lbm_solver/base/triangle_mesh.h"
 #include "lbm_solver/base/units.h"
-#include "protocol/messages.h"
+#include "lbm_solver/base/voxels.h"
+#include "protocol/wire/messages.h"
 
 namespace lbm {
 
@@ -57,8 +60,25 @@ struct BoundaryScene {
   TimeTableScene table;    ///< value × factor
 };
 
-/// A solid that stays where it is: a disc or sphere (curved, with force and torque) or a block of
-/// whole cells.
+/// A surface from a file, as it lies in the box.
+struct MeshScene {
+  std::string file;
+  std::shared_ptr<const TriangleMesh> surface;  ///< closed [m]
+  bool hollow = false;                          ///< solid is what lies outside of it
+  double thickness = 0.0;                       ///< of a layer that was made of the surface [m]
+  double volume = 0.0;                          ///< that it encloses [m^3]
+};
+
+/// An image from a file, as solid fractions.
+struct ImageScene {
+  std::string file;
+  std::shared_ptr<const Voxels> voxels;
+  double voxel = 0.0;  ///< size of one [m]
+  Vec3 at;             ///< lower corner [m]
+};
+
+/// A solid that stays where it is: a disc or sphere (curved, it may spin), a block of whole cells,
+/// a mesh or an image.
 struct ObstacleScene {
   bool round = false;   ///< a disc, in three dimensions a sphere
   bool hollow = false;  ///< round, and solid outside
@@ -67,6 +87,10 @@ struct ObstacleScene {
   Vec3 centre;
   double diameter = 0.0;  ///< [m]
   Vec3 from, to;          ///< corners of a block [m]
+  std::optional<MeshScene> mesh;
+  std::optional<ImageScene> image;
+
+  bool block() const { return !round && !mesh && !image; }
 };
 
 struct InitialScene {
@@ -134,15 +158,41 @@ struct CouplingScene {
   bool inner_inertia = true;    ///< correct for the inertia of the fluid inside a particle
   protocol::Buoyancy buoyancy = protocol::Buoyancy::ByFluid;
   std::optional<double> virtual_mass;  ///< over covered fluid; absent: where particles are light
+  /// A body force on the fluid carries the weight of all particles in it, whatever their number.
+  bool carry_weight = false;
   double lubrication_range = 0.0;      ///< gap below which it acts [cells]; 0: off
   bool overlapped = false;             ///< both programs at once, loads one interval old
   double timeout = 300.0;              ///< longest wait for the solid [s]
+  double connect_timeout = 30.0;       ///< how long its program may take to start [s]
+};
+
+/// Something that is measured along the run and written to a table of its own.
+struct SensorScene {
+  enum class Kind { Line, Plane, Side };
+  Kind kind = Kind::Plane;
+  std::string name;  ///< of its table, sensor-NAME.csv
+  double every = 0;  ///< [s]; 0: every interval
+  Vec3 from, to;   ///< ends of a line; corners of the part of the box whose cells a plane takes [m]
+  int count = 20;  ///< places of a line
+  int axis = 0;    ///< normal of a plane
+  double at = 0.0;  ///< place of a plane along it [m]
+  SideName side = SideName::Left;
+};
+
+/// Mean values of the fields over time.
+struct AverageScene {
+  double from = 0.0;   ///< [s]
+  double every = 0.0;  ///< between two samples [s]; 0: every interval
 };
 
 struct OutputScene {
   double fields_every = 0.0;  ///< [s]; 0: none
   double probe_every = 0.0;   ///< [s]; 0: every interval
   std::vector<Vec3> points;   ///< places where pressure and velocity are written [m]
+  /// Numbers (ids) of the particles that have rows in the table of probes; empty: all.
+  std::vector<std::int64_t> probe_particles;
+  std::optional<AverageScene> average;
+  std::vector<SensorScene> sensors;
 };
 
 struct Scene {

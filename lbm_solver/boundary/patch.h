@@ -87,6 +87,10 @@ class VelocityPatch final : public Patch {
   VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,
                 bool parabolic, const Opening& opening, const InTime& in_time);
   void apply(const Sweep& sweep) override;
+  /// What it added to the population bounced back along a link in the sweep of a step.
+  double added(std::size_t link, std::int64_t step) const {
+    return in_time_.factor(step) * gain_[link];
+  }
 
  private:
   std::vector<double> gain_;  // [link]

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 
+#include "lbm_solver/io/stl_file.h"
+#include "protocol/wire/walls.h"
+
 namespace lbm {
 
 namespace {
@@ -23,15 +26,38 @@ protocol::SideWall wall_at(const Scene& s, SideName side) {
   return wall;
 }
 
+std::vector<const MeshScene*> meshes_of(const Scene& s) {
+  std::vector<const MeshScene*> meshes;
+  for (const ObstacleScene& o : s.obstacles)
+    if (o.mesh) meshes.push_back(&*o.mesh);
+  return meshes;
+}
+
 void add_walls(const Scene& s, protocol::Hello& h) {
   h.sides.emplace();
   for (int side = 0; side < 2 * s.box.dimension; ++side)
     (*h.sides)[side] = wall_at(s, static_cast<SideName>(side));
-  const std::size_t n = s.obstacles.size();
+  const auto meshes = meshes_of(s);
+  for (const MeshScene* mesh : meshes) {
+    const auto [low, high] = bounds(*mesh->surface);
+    h.bodies.push_back("obstacle: " + protocol::mesh_text({low.x(), low.y(), low.z()},
+                                                          {high.x(), high.y(), high.z()}));
+  }
+  const std::size_t n = s.obstacles.size() - meshes.size();
   if (n > 0) h.bodies.push_back(n == 1 ? "the scene's obstacle" : fmt::format("{} obstacles", n));
 }
 
+std::string mesh_file(const std::string& folder, std::size_t number) {
+  return fmt::format("{}/mesh{}.stl", folder, number);
+}
+
 }  // namespace
+
+void write_meshes(const Scene& s, const std::string& folder) {
+  const auto meshes = meshes_of(s);
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    write_stl(mesh_file(folder, i + 1), *meshes[i]->surface);
+}
 
 protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start,
                            const std::optional<Block>& cells) {
@@ -107,6 +133,8 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
     number(fmt::format("particle{}_y", i + 1), p.start[i].y());
     if (!flat) number(fmt::format("particle{}_z", i + 1), p.start[i].z());
   }
+  for (std::size_t i = 0; i < meshes_of(s).size(); ++i)
+    h.variables.push_back({fmt::format("mesh{}", i + 1), mesh_file(start.out, i + 1)});
   if (p.contact_stiffness) number("contact_stiffness", *p.contact_stiffness);
   for (const auto& [name, value] : p.variables) h.variables.push_back({name, value});
   return h;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lbm_solver/solver/plan.h"
-#include "protocol/messages.h"
+#include "protocol/wire/messages.h"
 
 namespace lbm {
 
@@ -17,6 +17,11 @@ struct RunStart {
   std::string checkpoint = "out/checkpoint";  ///< path without ending
   std::string solid_part = "none";            ///< the solid's file of the one it goes on from
 };
+
+/// Writes the scene's meshes as they lie in the box, mesh1.stl, mesh2.stl, …, for the solid's
+/// script (its variables mesh1, …) and for ParaView. @throws InputError  the folder cannot be
+/// written
+void write_meshes(const Scene& scene, const std::string& folder);
 
 /// What the fluid says to the solid: everything of the plan that both must agree on, and the
 /// variables that its script may use instead of numbers of its own.

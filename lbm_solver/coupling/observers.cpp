@@ -34,6 +34,19 @@ double wrapped(double x, double lo, double length) {
   return inside < lo + length ? inside : lo;  // rounding
 }
 
+/// Leaves the particles that the scene has chosen; all where it has chosen none.
+void keep_chosen(const std::vector<std::int64_t>& ids, Particles::Everything& all) {
+  if (ids.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < all.particles.size(); ++i) {
+    if (std::find(ids.begin(), ids.end(), all.particles[i].state.id) == ids.end()) continue;
+    all.particles[kept] = all.particles[i];
+    all.loads[kept++] = all.loads[i];
+  }
+  all.particles.resize(kept);
+  all.loads.resize(kept);
+}
+
 /// What a progress line says of grains and bonds.
 std::string solid_text(const Particles* particles) {
   const std::string text =
@@ -60,6 +73,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
       ranks_(ranks),
       log_(log),
       probe_times_(scene.output.probe_every, plan.interval()),
+      folder_(folder),
       first_(first),
       guard_every_(std::max<std::int64_t>(1, kGuardSteps / plan.fluid_steps)),
       start_(std::chrono::steady_clock::now()),
@@ -70,6 +84,8 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
     field_times_.emplace(scene.output.fields_every, plan.interval());
   const bool flat = scene.box.dimension == 2;
   if (!scene.obstacles.empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
+  sensors_ = make_sensors(scene, plan, ranks, folder, keep);
+  if (scene.output.average) average_.emplace(*scene.output.average, plan, ranks);
   if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);
   if (ranks.rank() != 0) return;
   if (scene.coupling) probes_.emplace(folder, scene.box.dimension, keep);
@@ -82,10 +98,13 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
 }
 
 std::int64_t Observers::next_look(std::int64_t state) const {
-  if (obstacles_) return state + 1;  // their loads are summed in each
   std::int64_t next = (state / guard_every_ + 1) * guard_every_;
-  if (!scene_.output.points.empty()) next = std::min(next, probe_times_.next(state + 1));
+  if (obstacles_ || !scene_.output.points.empty())
+    next = std::min(next, probe_times_.next(state + 1));
   if (field_times_) next = std::min(next, field_times_->next(state + 1));
+  if (average_) next = std::min(next, average_->next(state + 1));
+  for (const auto& sensor : sensors_)
+    next = std::min(next, sensor->sums() ? state + 1 : sensor->next(state + 1));
   return next;
 }
 
@@ -99,6 +118,7 @@ void Observers::at_state(std::int64_t state, Fluid& fluid, const Particles* part
     write_points(time_of(state), fluid);
     if (obstacles_) obstacles_->write(time_of(state));
   }
+  measure(state, fluid, last);
   if (last && particles) write_particles(time_of(state), *particles);
   if (last && plan_.kernel.parameters.viscosity_table) report_viscosity(state, fluid);
 }
@@ -112,6 +132,15 @@ void Observers::report_viscosity(std::int64_t state, const Fluid& fluid) {
       "largest shear rate {:.4g} 1/s",
       100.0 * viscosity_->at_rest_bound, 100.0 * viscosity_->at_shear_bound,
       viscosity_->largest_shear / plan_.units.dt);
+}
+
+/// What the scene's sensors and its average want of a state.
+void Observers::measure(std::int64_t state, Fluid& fluid, bool last) {
+  for (const auto& sensor : sensors_)
+    if (last || sensor->due(state)) sensor->write(time_of(state), fluid);
+  if (!average_) return;
+  if (average_->due(state)) average_->add(time_of(state), fluid);
+  if (last) average_->write(folder_, plan_.units);
 }
 
 void Observers::after_interval(std::int64_t state, Fluid& fluid, const Particles* particles) {
@@ -129,6 +158,9 @@ Record Observers::save() const {
   record.set("mass_excess", mass_excess_);
   if (obstacles_) record.set("obstacle_loads", obstacles_->save());
   if (steady_) record.set("steady", steady_->save(ranks_));
+  for (std::size_t i = 0; i < sensors_.size(); ++i)
+    record.set("sensor_" + scene_.output.sensors[i].name, sensors_[i]->save());
+  if (average_) record.set("average", average_->save());
   return record;
 }
 
@@ -138,12 +170,16 @@ void Observers::load(const Record& record) {
   first_mass_excess_ = record.real("first_mass_excess");
   mass_excess_ = record.real("mass_excess");
   if (obstacles_) obstacles_->load(record.part("obstacle_loads"));
+  for (std::size_t i = 0; i < sensors_.size(); ++i)
+    sensors_[i]->load(record.part("sensor_" + scene_.output.sensors[i].name));
+  if (average_) average_->load(record.part("average"));
   // steady_below may be another one now, or new
   if (steady_ && record.parts().contains("steady")) steady_->load(record.part("steady"), ranks_);
 }
 
 void Observers::write_particles(double time, const Particles& particles) {
-  const Particles::Everything all = shown(particles);
+  Particles::Everything all = shown(particles);
+  keep_chosen(scene_.output.probe_particles, all);
   if (probes_) probes_->write(time, all.particles, all.loads);
 }
 

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "lbm_solver/coupling/diagnosis.h"
+#include "lbm_solver/coupling/field_average.h"
 #include "lbm_solver/coupling/obstacle_loads.h"
 #include "lbm_solver/coupling/output_times.h"
 #include "lbm_solver/coupling/particles.h"
+#include "lbm_solver/coupling/sensors.h"
 #include "lbm_solver/coupling/steady_watch.h"
 #include "lbm_solver/io/field_writer.h"
 #include "lbm_solver/io/log.h"
@@ -65,9 +68,15 @@ class Observers {
   /// writes the particles' rows of this one.
   /// @throws NumericsError
   void after_interval(std::int64_t state, Fluid& fluid, const Particles* particles);
+  /// Whether anything sums loads: then a fluid alone calls add_loads after each step.
+  bool sums() const {
+    return obstacles_ || std::any_of(sensors_.begin(), sensors_.end(),
+                                     [](const auto& sensor) { return sensor->sums(); });
+  }
   /// After each fluid step: loads in the order of obstacle_bodies.
-  void add_loads(const Fluid& fluid, std::span<const BodyLoad> loads) {
+  void add_loads(Fluid& fluid, std::span<const BodyLoad> loads) {
     if (obstacles_) obstacles_->add(fluid, loads);
+    for (const auto& sensor : sensors_) sensor->add(fluid);
   }
   /// A fluid alone whose velocity no longer changes (run.steady_below).
   bool steady() const { return steady_ && steady_->steady(); }
@@ -77,6 +86,7 @@ class Observers {
  private:
   double time_of(std::int64_t state) const { return static_cast<double>(state) * plan_.interval(); }
   void guard(std::int64_t state, Fluid& fluid, const Particles* particles);
+  void measure(std::int64_t state, Fluid& fluid, bool last);
   Particles::Everything shown(const Particles& particles) const;
   void add_particles(const Particles& particles, FieldFrame& frame) const;
   void add_bonds(const std::vector<protocol::Particle>& particles,
@@ -96,6 +106,9 @@ class Observers {
   std::optional<ProbeWriter> probes_;       // particles
   std::optional<CsvWriter> points_;
   std::optional<ObstacleLoads> obstacles_;
+  std::vector<std::unique_ptr<Sensor>> sensors_;
+  std::optional<FieldAverage> average_;
+  const std::string folder_;
   std::optional<SteadyWatch> steady_;
   std::optional<FieldWriter> fields_;  // of rank 0, like the tables
   bool fresh_ = true;                  // it does not go on from a checkpoint

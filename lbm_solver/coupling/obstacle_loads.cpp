@@ -15,12 +15,12 @@ ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decompo
   int lines = 0;
   for (const ObstacleScene& o : scene.obstacles) {
     has_grains_ = has_grains_ || o.grain;
-    (o.round ? line_ : block_line_).push_back(o.grain ? 0 : ++lines);
+    (o.round ? line_ : o.block() ? block_line_ : shape_line_).push_back(o.grain ? 0 : ++lines);
   }
   sums_.resize(lines + 1);
 }
 
-void ObstacleLoads::add(const Fluid& fluid, std::span<const BodyLoad> bodies) {
+void ObstacleLoads::add(Fluid& fluid, std::span<const BodyLoad> bodies) {
   const auto add_to = [this](int line, const BodyLoad& load) {
     sums_[line].force += load.force;
     sums_[line].torque += load.torque;
@@ -28,9 +28,11 @@ void ObstacleLoads::add(const Fluid& fluid, std::span<const BodyLoad> bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) add_to(line_[i], bodies[i]);
   if (!boxes_.empty()) {
     if (!blocks_) blocks_.emplace(fluid, boxes_);
-    const std::vector<BodyLoad> loads = blocks_->loads(fluid);
+    const std::vector<BodyLoad> loads = blocks_->loads();
     for (std::size_t i = 0; i < loads.size(); ++i) add_to(block_line_[i], loads[i]);
   }
+  const std::vector<BodyLoad> shapes = fluid.fixed_loads();
+  for (std::size_t i = 0; i < shapes.size(); ++i) add_to(shape_line_[i], shapes[i]);
   ++steps_;
 }
 

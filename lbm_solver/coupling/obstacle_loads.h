@@ -23,7 +23,7 @@ class ObstacleLoads {
                 const std::string& folder, double keep_until);
 
   /// After each fluid step. @param bodies  this rank's loads in the order of obstacle_bodies
-  void add(const Fluid& fluid, std::span<const BodyLoad> bodies);
+  void add(Fluid& fluid, std::span<const BodyLoad> bodies);
   /// Collective.
   void write(double time);
 
@@ -40,6 +40,7 @@ class ObstacleLoads {
   std::optional<CsvWriter> table_;  // of rank 0
   std::vector<int> line_;           // [round obstacle]: into sums_
   std::vector<int> block_line_;     // [block]: into sums_
+  std::vector<int> shape_line_;     // [mesh or image]: into sums_
   const std::vector<CellBox> boxes_;
   std::optional<BlockLoads> blocks_;  // from the first step on
   std::vector<BodyLoad> sums_;        // since the last line, of this rank; 0: grains

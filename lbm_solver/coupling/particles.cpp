@@ -120,6 +120,16 @@ bool Particles::at_home(std::size_t i) const {
   return ranks_.alone() || holds(ranks_.domain(), ranks_.cells(), centre);
 }
 
+Vec3 Particles::weight_in_fluid() const {
+  double mass = 0.0;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (!at_home(i)) continue;
+    mass += particles_[i].shape.mass;
+    if (coupling_.buoyancy != protocol::Buoyancy::None) mass -= displaced_mass(i);
+  }
+  return mass * fluid_.gravity;
+}
+
 std::vector<double> Particles::masses() const {
   std::vector<double> masses;
   for (const auto& p : particles_) masses.push_back(p.shape.mass / units_.mass());

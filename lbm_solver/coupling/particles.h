@@ -10,7 +10,7 @@
 #include "lbm_solver/base/scene.h"
 #include "lbm_solver/field/decomposition.h"
 #include "lbm_solver/immersed/body.h"
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 
@@ -94,6 +94,9 @@ class Particles {
 
   /// Where the bodies are `elapsed` seconds after the interval began, moving on straight.
   std::span<const Body> bodies(double elapsed);
+
+  /// Weight less buoyancy [N] of the particles whose home this rank is.
+  Vec3 weight_in_fluid() const;
 
   /// Masses of the bodies, lattice units.
   std::vector<double> masses() const;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/viscosity_plan.h"
@@ -94,6 +95,27 @@ std::vector<std::string> names_of(const std::vector<Choice>& choices) {
   return names;
 }
 
+/// What a mesh or an image is; empty for other obstacles.
+std::string shape_text(const ObstacleScene& o, double dx) {
+  if (o.mesh) {
+    const auto [low, high] = bounds(*o.mesh->surface);
+    const Vec3 size = high - low;
+    return fmt::format(
+        "mesh {}: {} triangles, {:.4g} × {:.4g} × {:.4g} m = {:.3g} × {:.3g} × {:.3g} cells, {} "
+        "{:.4g} m³{}",
+        o.mesh->file, o.mesh->surface->triangles.size(), size.x(), size.y(), size.z(),
+        size.x() / dx, size.y() / dx, size.z() / dx,
+        o.mesh->hollow ? "solid outside of" : "encloses", o.mesh->volume,
+        o.mesh->thickness > 0.0 ? fmt::format(", {:.3g} cells thick", o.mesh->thickness / dx) : "");
+  }
+  if (!o.image) return {};
+  const auto& [size, solid] = *o.image->voxels;
+  const double sum = std::accumulate(solid.begin(), solid.end(), 0.0);
+  return fmt::format("image {}: {} × {} × {} voxels of {:.4g} m, {:.3g} cells each, {:.4g} solid",
+                     o.image->file, size[0], size[1], size[2], o.image->voxel, o.image->voxel / dx,
+                     sum / static_cast<double>(solid.size()));
+}
+
 }  // namespace
 
 std::string describe_choices() {
@@ -106,7 +128,7 @@ std::string describe_choices() {
   line("numerics.solid_term", known_solid_terms());
   line("numerics.scheme", names_of(known_schemes()));
   line("fluid.viscosity.model", names_of(known_viscosities()));
-  return out + "or \"auto\"; lbm_solver/README.md has every key of a scene\n";
+  return out + "or \"auto\"; lbm_solver/docs/scene.md has every key of a scene\n";
 }
 
 std::string describe(const Scene& s, const Plan& p) {
@@ -146,6 +168,10 @@ std::string describe(const Scene& s, const Plan& p) {
   if (s.particles && s.coupling) {
     const std::string text = hydraulic_text(*s.particles, p.units.dx, flat);
     if (!text.empty()) line("hydraulic", text);
+  }
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
+    const std::string text = shape_text(s.obstacles[i], p.units.dx);
+    if (!text.empty()) line("obstacle", fmt::format("{}. {}", i + 1, text));
   }
   if (s.coupling)
     line("coupling",

@@ -11,9 +11,10 @@
 #include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/io/checkpoint.h"
-#include "protocol/program.h"
-#include "protocol/solid_parts.h"
-#include "protocol/walls.h"
+#include "lbm_solver/io/script_variables.h"
+#include "protocol/program/program.h"
+#include "protocol/program/solid_parts.h"
+#include "protocol/wire/walls.h"
 
 namespace lbm {
 namespace {
@@ -71,6 +72,8 @@ RunStart start_of(const RunOptions& options, const Plan& plan, const Restart* re
   RunStart start;
   start.out = options.out;
   start.checkpoint = absolute(options.out + "/checkpoint");
+  if (const std::string problem = why_no_script_path(start.checkpoint); !problem.empty())
+    throw InputError("--out " + options.out, problem, "choose another folder");
   if (!restart) return start;
   start.interval = restart->interval;
   if (start.interval >= last_interval(plan, options))
@@ -126,6 +129,10 @@ class CoupledRun {
     for (const std::string& wall :
          protocol::one_sided_walls(make_hello(scene, plan, start_, ranks.cells()), partner_))
       log.say(start_.interval, "warning", "{}", wall);
+    if (!partner_.sides)
+      log.say(start_.interval, "coupling",
+              "{} does not tell its walls: they are not compared with the fluid's",
+              partner_.program);
     if (!restart) return;
     load_from(*restart, [&] {
       fluid_.load(restart->record.part("fluid"));
@@ -170,6 +177,7 @@ class CoupledRun {
         stands_at_.reset();
       particles_.arrive(arrival.particles, plan_.interval());
       particles_.tell(arrival.report);
+      if (scene_.coupling->carry_weight) carry_weight(interval);
       place(0);
       observers_.at_state(interval, fluid_, &particles_, last);
       clock_.charge("output");
@@ -183,6 +191,22 @@ class CoupledRun {
       observers_.after_interval(interval, fluid_, &particles_);
       clock_.charge("output");
     }
+  }
+
+  /// The force on the fluid that carries the particles' weight, anew where their number changes.
+  void carry_weight(std::int64_t interval) {
+    Vec3 weight = particles_.weight_in_fluid();
+    ranks_.sum(std::span<double>(weight.data(), 3));
+    if (weight == carried_) return;
+    carried_ = weight;
+    const Cell3 n = plan_.domain.cells();
+    const double mass = plan_.units.mass() * n[0] * n[1] * n[2];  // of fluid that filled the box
+    const Vec3 force = scene_.fluid.body_force - weight / mass;
+    fluid_.set_body_force(force * (plan_.units.dt * plan_.units.dt / plan_.units.dx));
+    log_.say(interval, "balance",
+             "a body force of ({:.6g}, {:.6g}, {:.6g}) m/s² on the fluid, with "
+             "which the particles' weight is carried",
+             force.x(), force.y(), force.z());
   }
 
   /// Where the solids are when a step of the interval begins.
@@ -284,6 +308,7 @@ class CoupledRun {
   const StopTimes times_;
   bool keep_last_;  // the fluid's part that lies there is good
   std::optional<std::int64_t> stands_at_ = start_.interval;  // no part of an interval is done
+  Vec3 carried_ = Vec3::Zero();   // weight of the particles in the fluid [N]
   std::optional<Record> memory_;  // of particles_ before those of stands_at_ arrived
   std::string ending_ = "complete";
   PartClock clock_;
@@ -303,11 +328,13 @@ void check_until(const Scene& scene, const RunOptions& options) {
 Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                     protocol::Channel& channel, const RunOptions& options, Log& log,
                     const Restart* restart) {
+  if (ranks.rank() == 0) write_meshes(scene, options.out);  // before the solid is told their names
   return CoupledRun(scene, plan, ranks, channel, options, log, restart).run();
 }
 
 Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                   const RunOptions& options, Log& log, const Restart* restart) {
+  if (ranks.rank() == 0) write_meshes(scene, options.out);
   Fluid fluid = make_fluid(scene, plan, ranks);
   if (restart) load_from(*restart, [&] { fluid.load(restart->record.part("fluid")); });
   Observers observers(scene, plan, ranks, options.out, log, fluid.steps());
@@ -331,6 +358,13 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
                      keep_last ? fluid_part_before(options.out, "checkpoint") : "");
     keep_last = true;
   };
+  Fluid::AfterStep add_loads;
+  if (observers.sums())
+    add_loads = [&] {
+      clock.charge("sweep");
+      observers.add_loads(fluid, scene.obstacles.empty() ? std::vector<BodyLoad>() : fluid.loads());
+      clock.charge("loads");
+    };
   for (std::int64_t step = first;; step = fluid.steps()) {
     const bool signalled = ranks.max(protocol::signalled() ? 1.0 : 0.0) > 0.0;
     if (signalled)
@@ -345,10 +379,8 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     if (last) break;
     std::int64_t next = std::min(observers.next_look(step), end);
     if (times.any()) next = std::min(next, times.next_checkpoint(step));
-    fluid.advance(next - step);
+    fluid.advance(next - step, add_loads);
     clock.charge("sweep");
-    if (!scene.obstacles.empty()) observers.add_loads(fluid, fluid.loads());
-    clock.charge("loads");
     observers.after_interval(next - 1, fluid, nullptr);
     clock.charge("output");
   }

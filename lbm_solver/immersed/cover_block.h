@@ -18,7 +18,7 @@ struct alignas(sizeof(Pack)) Lanes : std::array<double, kPackWidth> {};
 /// that its map and its loads are written and read one after another; only the sweep visits them in
 /// its own order.
 struct alignas(64) CoverBlock {
-  Lanes cover;  ///< solid fraction of each cell, or kCore, or kWall; 0: fluid
+  Lanes cover;  ///< solid fraction of each cell, or the number of its CoverKind; 0: fluid
   /// Of the force on the solid, sums over the cells in lattice units: its x and y component, y
   /// times the lane number, z, z times the lane number.
   std::array<double, 5> sums;
@@ -31,10 +31,23 @@ struct alignas(64) CoverBlock {
   Vec3 moment() const { return {0.0, sums[2], sums[4]}; }
 };
 
-/// Cells that are solid whole and in a solid's core, or in a wall.
-inline constexpr double kCore = 2.0, kWall = 3.0;
+/// What a covered cell is to its solid: the surface passes through it, it is covered whole, it lies
+/// in the core of a body, or in a wall at rest.
+enum class CoverKind { Surface, Whole, Core, Wall };
+
+/// How `cover` says so: a surface cell has its solid fraction there, any other the number of its
+/// kind.
+constexpr double cover_of(CoverKind kind) {
+  return static_cast<double>(kind);
+}
+inline constexpr double kCore = cover_of(CoverKind::Core), kWall = cover_of(CoverKind::Wall);
 /// A cell covered to round-off is covered whole.
 inline constexpr double kWhole = 1.0 - 1e-12;
+
+/// The kinds of a pack of covered cells, by which a LaneChoice chooses.
+[[gnu::always_inline]] inline LaneChoice::Which kinds_of(const Pack& cover) {
+  return LaneChoice::which(cover + Pack(cover_of(CoverKind::Whole) - kWhole));
+}
 
 /// Solid fraction of cells, of what a block or several together have in `cover`.
 template <class V>

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "lbm_solver/immersed/geometry.h"
+
 namespace lbm {
 namespace {
 
@@ -51,25 +53,37 @@ void CoverMap::update(std::span<const Body> bodies) {
 }
 
 void CoverMap::add_wall(const Cell3& from, const Cell3& to) {
-  int begin[3], end[3];
-  for (int a = 0; a < 3; ++a) {
-    begin[a] = std::max(0, from[a] - cells_.begin[a]);
-    end[a] = std::min(cells_.size[a], to[a] - cells_.begin[a]);
-    if (begin[a] >= end[a]) return;  // on other ranks alone
-  }
-  const int first = begin[0] / kPackWidth, blocks = (end[0] - 1) / kPackWidth - first + 1;
-  auto& wall = walls_.emplace_back();
-  wall.resize(static_cast<std::size_t>(blocks) * (end[1] - begin[1]) * (end[2] - begin[2]));
-  CoverBlock* block = wall.data();
-  for (int z = begin[2]; z < end[2]; ++z)
-    for (int y = begin[1]; y < end[1]; ++y)
-      for (int b = first; b < first + blocks; ++b, ++block) {
-        for (int lane = 0; lane < kPackWidth; ++lane) {
-          const int x = b * kPackWidth + lane;
-          block->cover[lane] = x >= begin[0] && x < end[0] ? kWall : 0.0;
-        }
-        insert(index_[place(y, z, b)], *block);
-      }
+  walls_.push_back(fill_blocks({CellBox{from, to}}));
+}
+
+void CoverMap::add(const Geometry& geometry) {
+  fixed_.push_back(fill_blocks(geometry));
+}
+
+/// The blocks that a solid at rest covers, linked.
+std::vector<CoverBlock> CoverMap::fill_blocks(const Geometry& geometry) {
+  const Vec3 centre = (geometry.centre() / kSnap).array().round().matrix() * kSnap;
+  const auto& begin = cells_.begin;
+  std::vector<CoverBlock> blocks;
+  std::vector<std::size_t> places;
+  fill(geometry, domain_, cells_, shift_, [&](const FractionSpan& span) {
+    const auto& [x, y, z, fractions] = span;
+    const int end = x + static_cast<int>(fractions.size());
+    for (int b = x / kPackWidth; b * kPackWidth < end; ++b) {
+      CoverBlock block{};
+      const int first = b * kPackWidth;
+      for (int at = std::max(x, first); at < std::min(end, first + kPackWidth); ++at)
+        block.cover[at - first] = fractions[at - x] >= kWhole ? kWall : fractions[at - x];
+      if (std::ranges::all_of(block.cover, [](double cover) { return cover == 0.0; })) continue;
+      block.arm[0] = static_cast<float>(first + begin[0] + 0.5 - centre.x());
+      block.arm[1] = static_cast<float>(y + begin[1] + 0.5 - centre.y());
+      block.arm[2] = d_ == 3 ? static_cast<float>(z + begin[2] + 0.5 - centre.z()) : 0.0F;
+      blocks.push_back(block);
+      places.push_back(place(y, z, b));
+    }
+  });
+  for (std::size_t k = 0; k < blocks.size(); ++k) insert(index_[places[k]], blocks[k]);
+  return blocks;
 }
 
 /// Blocks with several solids list them in the order of the bodies, walls first: what a run has
@@ -169,6 +183,13 @@ std::vector<BodyLoad> CoverMap::loads() const {
   return result;
 }
 
+std::vector<BodyLoad> CoverMap::fixed_loads() const {
+  std::vector<BodyLoad> result;
+  for (const auto& blocks : fixed_)
+    result.push_back(d_ == 2 ? load_of<2>(blocks) : load_of<3>(blocks));
+  return result;
+}
+
 CoverMap::Cell CoverMap::cell(int x, int y, int z) const {
   const CoverBlock* first = row(y, z)[x / kPackWidth];
   if (!first) return {0.0, Vec3()};
@@ -195,7 +216,8 @@ std::size_t CoverMap::covered_blocks() const {
 std::size_t CoverMap::bytes() const {
   std::size_t blocks = 0;
   for (const Footprint& f : footprints_) blocks += f.blocks().size();
-  for (const auto& wall : walls_) blocks += wall.size();
+  for (const auto* list : {&walls_, &fixed_})
+    for (const auto& solid : *list) blocks += solid.size();
   return std::span(index_).size_bytes() + blocks * sizeof(CoverBlock);
 }
 

@@ -10,6 +10,8 @@
 
 namespace lbm {
 
+struct Geometry;
+
 /// Covered cells of a rank: where a sweep finds the blocks of the solids. A block of the lattice
 /// that holds none is pure fluid and is swept without asking further.
 class CoverMap {
@@ -24,6 +26,9 @@ class CoverMap {
 
   /// Cells [from, to) of the box are a wall at rest: bounce-back in every cell.
   void add_wall(const Cell3& from, const Cell3& to);
+  /// A solid of any shape that stays where it is: cells that it covers whole are a wall, those at
+  /// its surface collide as those of a body do. @throws std::invalid_argument  see fill()
+  void add(const Geometry& geometry);
 
   int blocks_per_row() const { return blocks_per_row_; }
   /// For each SIMD block of row (y, z): what the first solid covers of it, with the others after
@@ -55,6 +60,8 @@ class CoverMap {
   /// Load of each body from the forces of the last sweep. Sums run over each body's own cells in a
   /// fixed order, so a load depends neither on threads nor on the order of the bodies.
   std::vector<BodyLoad> loads() const;
+  /// Likewise of the solids that were added, about their centres.
+  std::vector<BodyLoad> fixed_loads() const;
 
   /// What covers a cell of the rank.
   struct Cell {
@@ -76,16 +83,17 @@ class CoverMap {
   static void insert(CoverBlock*& at, CoverBlock& block);
   template <int D>
   static BodyLoad load_of(std::span<const CoverBlock> blocks);
+  std::vector<CoverBlock> fill_blocks(const Geometry& geometry);
 
   Domain domain_;
   Block cells_;
   RadiusShift shift_;  // of bodies, not of walls
   int d_;
   int blocks_per_row_;
-  std::vector<CoverBlock*> index_;     // [layer][row][block], then kRowsEnd nulls
-  std::vector<Motion> motions_;        // at rest; of each body
-  std::vector<Footprint> footprints_;  // [body]
-  std::vector<std::vector<CoverBlock>> walls_;
+  std::vector<CoverBlock*> index_;                      // [layer][row][block], then kRowsEnd nulls
+  std::vector<Motion> motions_;                         // at rest; of each body
+  std::vector<Footprint> footprints_;                   // [body]
+  std::vector<std::vector<CoverBlock>> walls_, fixed_;  // [wall]; [solid that was added]
 };
 
 }  // namespace lbm

@@ -103,7 +103,7 @@ class ResistanceCollision {
     const V eps = fraction_of(cell.cover);
     V tau(tau_);
     if constexpr (Collision::local_viscosity) tau = collide.relaxation_time(f, m, V(1.0) - eps);
-    const auto kind = LaneChoice::which(cell.cover + V(1.0 - kWhole));
+    const auto kind = kinds_of(cell.cover);
     const auto whole = eps >= V(kWhole);
     OddExchange<V> odd = surface_exchange<L, V>(eps, tau - V(0.5), V(mu_zero_));
     where(whole, odd.momentum) = momentum_(kind);

@@ -124,7 +124,7 @@ class CoveredCollision {
     const V eps = fraction_of(cell.cover);
     if constexpr (Collision::local_viscosity) tau = collide.relaxation_time(f, m, V(1.0) - eps);
     const V weight = weight_(eps, tau);
-    const auto kind = LaneChoice::which(cell.cover + V(1.0 - kWhole));
+    const auto kind = kinds_of(cell.cover);
     const auto of = [&](const Factor& factor) __attribute__((always_inline)) {
       return V(factor.fluid) + weight * factor.solid_less_fluid(kind);
     };

@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
-#include "protocol/hdf5_file.h"
+#include "lbm_solver/io/hdf5_array.h"
+#include "lbm_solver/io/view_script.h"
+#include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
 namespace {
@@ -16,35 +19,6 @@ namespace {
 using protocol::hdf5::check;
 using protocol::hdf5::Handle;
 using protocol::hdf5::Open;
-
-template <class T>
-hid_t memory_type();
-template <>
-hid_t memory_type<float>() {
-  return H5T_NATIVE_FLOAT;
-}
-template <>
-hid_t memory_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-
-/// @param unit  of the numbers, or of each column
-/// @param columns  of a table, their names
-template <class T>
-void write_array(hid_t group, const char* name, const std::vector<T>& data,
-                 const std::vector<hsize_t>& shape, const char* unit,
-                 const char* columns = nullptr) {
-  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
-                     H5Sclose, "make a space");
-  const Handle set(
-      H5Dcreate2(group, name, memory_type<T>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-      H5Dclose, std::string("create ") + name);
-  protocol::hdf5::set_attribute(set, columns ? "units" : "unit", std::string(unit));
-  if (columns) protocol::hdf5::set_attribute(set, "columns", std::string(columns));
-  if (data.empty()) return;
-  check(H5Dwrite(set, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()),
-        std::string("write ") + name + " (is the disk full?)");
-}
 
 /// What ParaView shows of each particle beside its place and radius.
 struct PointValue {
@@ -90,6 +64,17 @@ void append_row(std::vector<double>& to, const Particle& p, bool flat) {
                          s.omega[0], s.omega[1], s.omega[2], type});
 }
 
+/// States of the bonds of a frame that was written before.
+std::vector<double> bond_states(hid_t group) {
+  if (H5Lexists(group, "bond_state", H5P_DEFAULT) <= 0) return {};
+  const Handle set(H5Dopen2(group, "bond_state", H5P_DEFAULT), H5Dclose, "open bond_state");
+  const Handle space(H5Dget_space(set), H5Sclose, "read a space");
+  std::vector<double> states(H5Sget_simple_extent_npoints(space));
+  check(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, states.data()),
+        "read bond_state");
+  return states;
+}
+
 std::string group_name(std::size_t index) {
   return fmt::format("frame{:06}", index);
 }
@@ -99,6 +84,7 @@ std::string group_name(std::size_t index) {
 FieldWriter::FieldWriter(const std::string& folder, const Units& units, int dimension,
                          double keep_until)
     : folder_(folder), units_(units), dimension_(dimension) {
+  write_view();
   if (keep_until > 0.0 && keep_frames(keep_until)) return;
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Create);
   protocol::hdf5::set_attribute(file, "cell", units.dx);
@@ -148,7 +134,7 @@ bool FieldWriter::keep_frames(double until) {
       return axis < dimension_ ? static_cast<int>(cells[dimension_ - 1 - axis]) : 1;
     };
     entries_.push_back({time, along(0), along(1), along(2), rows("solid_fraction")[0] > 0,
-                        rows("particles")[0], rows("bond_state")[0]});
+                        rows("particles")[0], bond_states(group)});
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
@@ -166,7 +152,8 @@ void FieldWriter::write(const FieldFrame& f) {
   for (int k = 0; f.flux && k < dimension_; ++k)
     protocol::hdf5::set_attribute(group, std::string("flux_") + "xyz"[k], (*f.flux)[k]);
   const std::size_t bonds = f.bond_state.size();
-  const Entry entry{f.time, f.nx, f.ny, f.nz, !f.solid_fraction.empty(), f.particles.size(), bonds};
+  const Entry entry{f.time,      f.nx, f.ny, f.nz, !f.solid_fraction.empty(), f.particles.size(),
+                    f.bond_state};
   std::vector<hsize_t> cells;
   for (const auto n : shape(entry)) cells.push_back(n);
   std::vector<hsize_t> vectors = cells;
@@ -259,6 +246,7 @@ std::string FieldWriter::fluid_grid(std::size_t index) const {
 
 std::string FieldWriter::particle_grid(std::size_t index) const {
   const Entry& e = entries_[index];
+  if (e.particles == 0) return nothing("particles", e.time);
   const std::string group = group_name(index), n = fmt::format("{}", e.particles);
   std::string out = fmt::format(
       "<Grid Name=\"particles\"><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyvertex\" "
@@ -274,34 +262,77 @@ std::string FieldWriter::particle_grid(std::size_t index) const {
   return out + "</Grid>\n";
 }
 
-std::string FieldWriter::bond_grid(std::size_t index) const {
+/// The bonds that are intact, or those that are broken, with how (1 tension, 2 shear).
+std::string FieldWriter::bond_grid(std::size_t index, bool broken) const {
   const Entry& e = entries_[index];
   const std::string group = group_name(index);
-  std::string nodes;
-  for (std::size_t i = 0; i < e.bonds; ++i) nodes += fmt::format("{} {} ", 2 * i, 2 * i + 1);
+  std::string nodes, modes;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < e.bonds.size(); ++i) {
+    if ((e.bonds[i] != 0.0) != broken) continue;
+    nodes += fmt::format("{} {} ", 2 * i, 2 * i + 1);
+    modes += fmt::format("{:.0f} ", e.bonds[i]);
+    ++count;
+  }
+  if (count == 0) return nothing(broken ? "broken_bonds" : "bonds", e.time);
   return fmt::format(
-      "<Grid Name=\"bonds\"><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyline\" "
+      "<Grid Name=\"{}\"><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"Polyline\" "
       "NodesPerElement=\"2\" "
       "NumberOfElements=\"{}\"><DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"{} 2\">{}"
       "</DataItem></Topology>\n  <Geometry GeometryType=\"{}\">{}</Geometry>\n"
-      "  <Attribute Name=\"broken\" Center=\"Cell\">{}</Attribute>\n</Grid>\n",
-      e.time, e.bonds, e.bonds, nodes, dimension_ == 2 ? "XY" : "XYZ",
-      item(group + "/bond_ends", fmt::format("{} {}", 2 * e.bonds, dimension_), 8),
-      item(group + "/bond_state", fmt::format("{}", e.bonds), 8));
+      "  <Attribute Name=\"broken\" Center=\"Cell\"><DataItem Format=\"XML\" NumberType=\"Float\" "
+      "Dimensions=\"{}\">{}</DataItem></Attribute>\n</Grid>\n",
+      broken ? "broken_bonds" : "bonds", e.time, count, count, nodes,
+      dimension_ == 2 ? "XY" : "XYZ",
+      item(group + "/bond_ends", fmt::format("{} {}", 2 * e.bonds.size(), dimension_), 8), count,
+      modes);
 }
 
-/// Three timelines: the fluid, the particles and the bonds, the latter two where there are any.
+/// A particle of radius 0, or a bond of length 0, in the lower corner of the box.
+std::string FieldWriter::nothing(const char* name, double time) const {
+  const bool particle = std::string(name) == "particles";
+  const auto numbers = [](int count) {
+    std::string text;
+    for (int k = 0; k < count; ++k) text += "0 ";
+    return text;
+  };
+  std::string out = fmt::format(
+      "<Grid Name=\"{}\"><Time Value=\"{:.9g}\"/>\n  <Topology TopologyType=\"{}\" "
+      "NumberOfElements=\"1\"{}</Topology>\n  <Geometry GeometryType=\"XYZ\"><DataItem "
+      "Format=\"XML\" Dimensions=\"{} 3\">",
+      name, time, particle ? "Polyvertex" : "Polyline",
+      particle ? ">"
+               : " NodesPerElement=\"2\"><DataItem Format=\"XML\" NumberType=\"Int\" "
+                 "Dimensions=\"1 2\">0 1</DataItem>",
+      particle ? 1 : 2);
+  for (int end = 0; end < (particle ? 1 : 2); ++end)
+    out += fmt::format("{:.9g} {:.9g} {:.9g} ", units_.origin.x(), units_.origin.y(),
+                       units_.origin.z());
+  out += "</DataItem></Geometry>\n";
+  const auto attribute = [&](const char* what, int components) {
+    out += fmt::format(
+        "  <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\"><DataItem Format=\"XML\" "
+        "NumberType=\"Float\" Dimensions=\"1{}\">{}</DataItem></Attribute>\n",
+        what, components > 1 ? "Vector" : "Scalar", particle ? "Node" : "Cell",
+        components > 1 ? fmt::format(" {}", components) : "", numbers(components));
+  };
+  if (!particle) attribute("broken", 1);
+  for (const PointValue& value : kPointValues)
+    if (particle) attribute(value.name, value.components);
+  return out + "</Grid>\n";
+}
+
+/// Timelines: the fluid, and the particles, bonds and broken bonds, where a frame has any.
 void FieldWriter::write_xdmf() const {
   std::ofstream out(folder_ + "/fields.xdmf");
   out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n";
   const auto timeline = [&](const char* name, const auto& present, const auto& grid) {
+    if (std::none_of(entries_.begin(), entries_.end(), present)) return;
     std::string grids;
-    for (std::size_t i = 0; i < entries_.size(); ++i)
-      if (present(entries_[i])) grids += grid(i);
-    if (!grids.empty())
-      out << fmt::format(
-          "<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n{}</Grid>\n",
-          name, grids);
+    for (std::size_t i = 0; i < entries_.size(); ++i) grids += grid(i);
+    out << fmt::format(
+        "<Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n{}</Grid>\n", name,
+        grids);
   };
   timeline(
       "fluid", [](const Entry&) { return true; }, [&](std::size_t i) { return fluid_grid(i); });
@@ -309,9 +340,20 @@ void FieldWriter::write_xdmf() const {
       "particles", [](const Entry& e) { return e.particles > 0; },
       [&](std::size_t i) { return particle_grid(i); });
   timeline(
-      "bonds", [](const Entry& e) { return e.bonds > 0; },
-      [&](std::size_t i) { return bond_grid(i); });
+      "bonds", [](const Entry& e) { return !e.bonds.empty(); },
+      [&](std::size_t i) { return bond_grid(i, false); });
+  timeline(
+      "broken_bonds",
+      [](const Entry& e) {
+        return std::any_of(e.bonds.begin(), e.bonds.end(), [](double s) { return s != 0.0; });
+      },
+      [&](std::size_t i) { return bond_grid(i, true); });
   out << "</Domain></Xdmf>\n";
+}
+
+/// Not needed for the run: where it cannot be written, the tables say that the disk is full.
+void FieldWriter::write_view() const {
+  std::ofstream(folder_ + "/view.py") << kViewScript;
 }
 
 }  // namespace lbm

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lbm_solver/base/units.h"
-#include "protocol/hdf5_file.h"
-#include "protocol/session.h"
+#include "protocol/transport/hdf5_file.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 
@@ -29,11 +29,14 @@ struct FieldFrame {
 };
 
 /// Writes frames to `fields.h5` and keeps `fields.xdmf` beside it, which ParaView opens: fluid,
-/// particles and bonds, in two dimensions all in the x-y plane, with the fluid as a layer one cell
-/// thick just behind the particles. (ParaView's readers put a two-dimensional mesh of this kind
-/// into the y-z plane.) Every array names its unit, every table its columns, as attributes. The
-/// file is closed after every frame: a kill loses the frame in progress, seldom (while the file is
-/// being closed) makes the file unreadable; a restart then puts it aside and begins a new one.
+/// particles, bonds and broken bonds, in two dimensions all in the x-y plane, with the fluid as a
+/// layer one cell thick just behind the particles. (ParaView's readers put a two-dimensional mesh
+/// of this kind into the y-z plane.) A reader shows the frame before where a block has none: one
+/// without particles (bonds) has a particle of radius 0 (a bond of length 0) in the lower corner.
+/// `view.py` beside it makes a picture, or the scene in ParaView, of all of it. Every array names
+/// its unit, every table its columns, as attributes. The file is closed after every frame: a kill
+/// loses the frame in progress, seldom (while the file is being closed) makes the file unreadable;
+/// a restart then puts it aside and begins a new one.
 class FieldWriter {
  public:
   /// @param folder      must exist
@@ -44,15 +47,18 @@ class FieldWriter {
 
  private:
   void write_xdmf() const;
+  void write_view() const;
+  std::string nothing(const char* name, double time) const;
   std::string fluid_grid(std::size_t index) const;
   std::string particle_grid(std::size_t index) const;
-  std::string bond_grid(std::size_t index) const;
+  std::string bond_grid(std::size_t index, bool broken) const;
   bool keep_frames(double until);
   struct Entry {
     double time;
     int nx, ny, nz;
     bool solids;
-    std::size_t particles, bonds;
+    std::size_t particles;
+    std::vector<double> bonds;  // their states
   };
   std::vector<unsigned long long> shape(const Entry& entry) const;
   std::string shape_text(const Entry& entry, int more) const;

@@ -20,7 +20,8 @@ constexpr const char* kMark = ".bplbm";
 constexpr std::array kResults{
     "summary.json", "probes.csv",    "points.csv",           "obstacles.csv", "fields.h5",
     "fields.xdmf",  "checkpoint.h5", "checkpoint.before.h5", "fault.h5",      "fields-cut-off.h5"};
-constexpr std::array kOthers{"lbm.log", "liggghts.log", "lammps.log", "breaks.csv", "plot.log"};
+constexpr std::array kOthers{"lbm.log",  "liggghts.log", "lammps.log",  "breaks.csv",
+                             "plot.log", "view.py",      "averages.h5", "averages.xdmf"};
 
 bool is_marked(const fs::path& folder) {
   return fs::is_regular_file(folder / kMark);
@@ -46,12 +47,13 @@ void mark(const fs::path& folder, const std::string& scene) {
                      "give a folder that is writable as --out; is the disk full?");
 }
 
-/// checkpoint.K.solid, fault.K.solid, and what a kill left of a file half written.
+/// checkpoint.K.solid, fault.K.solid, meshK.stl, and what a kill left of a file half written.
 bool is_part(const std::string& name) {
   const bool state = name.starts_with("checkpoint.") || name.starts_with("fault.");
   return (state && name.ends_with(".solid")) ||
          (name.ends_with(".part") && (state || name.starts_with("summary.json"))) ||
-         name.ends_with(".csv.part") ||
+         name.ends_with(".csv.part") || (name.starts_with("sensor-") && name.ends_with(".csv")) ||
+         (name.starts_with("mesh") && name.ends_with(".stl")) ||
          (name.starts_with("fields-cut-off") && name.ends_with(".h5"));
 }
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 
@@ -19,8 +19,11 @@ class CsvWriter {
   /// @param columns     first line, each with its unit: "time [s],x [m]"; the first is the time
   /// @param keep_until  a run that goes on keeps the lines before this time
   CsvWriter(const std::string& path, const std::string& columns, double keep_until = 0.0);
-  void row(std::initializer_list<double> values);
-  /// @throws ProtocolError  what was written is lost: the disk is full, or somebody has deleted the
+  void row(std::span<const double> values);
+  void row(std::initializer_list<double> values) {
+    row(std::span<const double>(values.begin(), values.size()));
+  }
+  /// @throws ProgramError  what was written is lost: the disk is full, or somebody has deleted the
   /// file meanwhile, which the system would go on writing without a word
   void flush();
 

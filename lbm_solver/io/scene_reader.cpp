@@ -4,17 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/obstacle_reader.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
 #include "lbm_solver/viscosity/viscosity_law.h"
-#include "protocol/checksum.h"
-#include "protocol/input_file.h"
+#include "protocol/program/checksum.h"
+#include "protocol/program/input_file.h"
 
 namespace lbm {
 namespace {
@@ -239,8 +241,10 @@ std::map<std::string, std::string> read_variables(TableReader t) {
       t.fail(name, "is a name that the programs give a value of their own",
              "choose another name; lbm check --liggghts-vars lists those that are taken");
     if (const auto problem = why_no_variable(name, value); !problem.empty())
-      t.fail(name, "= \"" + value + "\" " + problem,
-             "a script variable is a word of letters, digits and _, and a number or a text");
+      t.fail(
+          name, "= \"" + value + "\" " + problem,
+          "a script variable is a word of letters, digits and _, its value a number or one word of "
+          "these and . , : / + - * =");
   }
   return variables;
 }
@@ -267,9 +271,11 @@ CouplingScene read_coupling(TableReader t) {
                : by == "solid" ? protocol::Buoyancy::BySolid
                                : protocol::Buoyancy::None;
   c.virtual_mass = t.optional_number("virtual_mass", {0.0, 100.0}, "");
+  c.carry_weight = t.flag_or("carry_weight", false);
   c.lubrication_range = t.number_or("lubrication_range", 0.0, {0.0, 10.0}, "cells");
   c.overlapped = t.choice_or("schedule", "serial", {"serial", "overlapped"}) == "overlapped";
   c.timeout = t.number_or("timeout", c.timeout, Bounds::positive(), "s");
+  c.connect_timeout = t.number_or("connect_timeout", c.connect_timeout, Bounds::positive(), "s");
   t.finish();
   return c;
 }
@@ -332,25 +338,6 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::strin
   b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
   t.finish();
   return b;
-}
-
-ObstacleScene read_obstacle(TableReader t, int d) {
-  ObstacleScene o;
-  o.round = t.has("centre");
-  if (o.round) {
-    o.centre = t.vector("centre", d, "[m]");
-    o.diameter = t.number("diameter", Bounds::positive(), "m");
-    o.hollow = t.flag_or("hollow", false);
-    if (d == 3)
-      o.spin = t.vector_or_zero("spin", 3, "[rad/s]");
-    else
-      o.spin.z() = t.number_or("spin", 0.0, {}, "rad/s");
-  } else {
-    o.from = t.vector("from", d, "[m], or centre and diameter of a disc or sphere");
-    o.to = t.vector("to", d, "[m]");
-  }
-  t.finish();
-  return o;
 }
 
 /// Discs or spheres at rest from a table `x,y,diameter` or `x,y,z,diameter` in m, beside the scene.
@@ -420,13 +407,74 @@ void settle_viscosity(const TableReader& root, Scene& scene) {
   scene.fluid.viscosity = ViscosityLaw(scene.fluid, *law.shear_rate).reference();
 }
 
-}  // namespace
+std::string sensor_name(TableReader& t) {
+  const std::string name = t.text_or("name", "");
+  const bool plain = !name.empty() && name.size() <= 60 &&
+                     std::all_of(name.begin(), name.end(), [](unsigned char c) {
+                       return std::isalnum(c) || c == '_' || c == '-';
+                     });
+  if (!plain)
+    t.fail("name", name.empty() ? "is missing" : "= \"" + name + "\" cannot name a file",
+           "give letters, digits, _ and -: its table is sensor-NAME.csv");
+  return name;
+}
 
-Scene read_scene(const std::vector<std::string>& files) {
-  toml::table merged = parse(files.front());
-  for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
+/// A sensor's line, plane or side.
+SensorScene read_sensor(TableReader t, const BoxScene& box) {
+  using Kind = SensorScene::Kind;
+  SensorScene s;
+  const int d = box.dimension;
+  s.name = sensor_name(t);
+  const std::string kind = t.choice_or("kind", "", {"line", "plane", "side"});
+  s.kind = kind == "line" ? Kind::Line : kind == "side" ? Kind::Side : Kind::Plane;
+  s.every = t.number_or("every", 0.0, Bounds::non_negative(), "s");
+  s.from = box.origin;
+  s.to = box.origin + box.size;
+  if (s.kind == Kind::Line) {
+    s.from = t.vector("from", d, "[m]");
+    s.to = t.vector("to", d, "[m]");
+    s.count = t.optional_integer("count", 2).value_or(20);
+  } else if (s.kind == Kind::Plane) {
+    std::vector<std::string> axes{"x", "y", "z"};
+    axes.resize(d);
+    s.axis = t.choice_or("axis", "", axes)[0] - 'x';
+    s.at = t.number("at", {box.origin[s.axis], box.origin[s.axis] + box.size[s.axis]}, "m");
+    if (t.has("from")) s.from = t.vector("from", d, "[m]");
+    if (t.has("to")) s.to = t.vector("to", d, "[m]");
+  } else {
+    std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
+    sides.resize(2 * d);
+    const std::string side = t.choice_or("side", "", sides);
+    s.side = static_cast<SideName>(std::find(sides.begin(), sides.end(), side) - sides.begin());
+  }
+  t.finish();
+  return s;
+}
+
+/// Numbers of particles. What is no whole number is refused.
+std::vector<std::int64_t> read_probe_particles(TableReader& t) {
+  std::vector<std::int64_t> ids;
+  for (const double id : t.numbers_or("probe_particles", {}, {1.0, 9e15}, "")) {
+    if (id != std::floor(id))
+      t.fail("probe_particles", fmt::format("holds {}, which is no particle's number", id),
+             "give ids, as [1, 5]");
+    ids.push_back(static_cast<std::int64_t>(id));
+  }
+  return ids;
+}
+
+AverageScene read_average(TableReader t) {
+  AverageScene a;
+  a.from = t.number_or("from", 0.0, Bounds::non_negative(), "s");
+  a.every = t.number_or("every", 0.0, Bounds::non_negative(), "s");
+  t.finish();
+  return a;
+}
+
+Scene read_tables(const toml::table& merged, const std::vector<std::string>& files,
+                  KeyNotes* keys) {
   Scene scene;
-  TableReader root(merged, "", files.front(), &scene.settings);
+  TableReader root(merged, "", files.front(), &scene.settings, keys);
   scene.file = fmt::format("{}", fmt::join(files, " + "));
   scene.title = root.text_or("title", std::filesystem::path(files.front()).stem().string());
   scene.box = read_box(root.table("box"));
@@ -445,7 +493,7 @@ Scene read_scene(const std::vector<std::string>& files) {
   for (const TableReader& t : root.tables("boundary"))
     scene.boundaries.push_back(read_boundary(t, scene.box, files.front()));
   for (const TableReader& t : root.tables("obstacle"))
-    scene.obstacles.push_back(read_obstacle(t, d));
+    scene.obstacles.push_back(read_obstacle(t, files.front(), scene.box));
   read_grains(root.optional_table("grains"), files.front(), d, scene.obstacles);
   scene.initial = read_initial(root.optional_table("initial"), d);
   settle_viscosity(root, scene);
@@ -453,9 +501,25 @@ Scene read_scene(const std::vector<std::string>& files) {
   scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
   scene.output.probe_every = output.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
   scene.output.points = output.vectors_or_none("points", d, "[m]");
+  scene.output.probe_particles = read_probe_particles(output);
   output.finish();
+  if (root.has("average")) scene.output.average = read_average(root.table("average"));
+  for (const TableReader& t : root.tables("sensor"))
+    scene.output.sensors.push_back(read_sensor(t, scene.box));
   root.finish();
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::vector<std::string>& files) {
+  toml::table merged = parse(files.front());
+  for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
+  return read_tables(merged, files, nullptr);
+}
+
+void note_keys(const std::string& scene, KeyNotes& keys) {
+  read_tables(toml::parse(scene), {"the reader's own example"}, &keys);
 }
 
 }  // namespace lbm

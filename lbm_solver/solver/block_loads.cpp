@@ -31,41 +31,50 @@ void each_cell(const CellBox& box, const Block& mine, F&& f) {
 
 }  // namespace
 
-BlockLoads::BlockLoads(const Fluid& fluid, const std::vector<CellBox>& blocks)
-    : arrivals_(blocks.size()) {
+BlockLoads::BlockLoads(Fluid& fluid, const std::vector<CellBox>& blocks)
+    : fluid_(fluid), arrivals_(blocks.size()) {
   const Lattice& lattice = fluid.lattice();
-  const Block& mine = fluid.cells();
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    each_cell(blocks[b], mine, [&](const Cell3& cell) {
+  const Cell3& begin = fluid.cells().begin;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (int q = 1; q < lattice.Q; ++q)
+      arrivals_[b].push_back({Vec3(lattice.c[q][0], lattice.c[q][1], lattice.c[q][2]), {}, {}, {}});
+    each_cell(blocks[b], fluid.cells(), [&](const Cell3& cell) {
       // where blocks overlap, a cell is of the first
       const auto owner = std::find_if(blocks.begin(), blocks.end(),
                                       [&](const CellBox& box) { return box.holds(cell); });
       if (owner != blocks.begin() + static_cast<std::ptrdiff_t>(b)) return;
+      const int x = cell[0] - begin[0], y = cell[1] - begin[1], z = cell[2] - begin[2];
       for (int q = 1; q < lattice.Q; ++q) {
-        const int* c = lattice.c[q];
-        const auto from = origin(fluid.domain(), cell, c);
+        const auto from = origin(fluid.domain(), cell, lattice.c[q]);
         if (!from || std::any_of(blocks.begin(), blocks.end(),
                                  [&](const CellBox& box) { return box.holds(*from); }))
           continue;
-        Arrival arrival{cell, q, {}};
-        for (int a = 0; a < 3; ++a) {
-          arrival.cell[a] -= mine.begin[a];
-          arrival.arm[a] = cell[a] + 0.5 - 0.5 * c[a];
-        }
-        arrival.arm -= blocks[b].centre();
-        if (lattice.D == 2) arrival.arm[2] = 0.0;
-        arrivals_[b].push_back(arrival);
+        Arrivals& arrivals = arrivals_[b][q - 1];
+        arrivals.in_even.push_back(fluid.arriving_in(false, q, x, y, z));
+        arrivals.in_odd.push_back(fluid.arriving_in(true, q, x, y, z));
+        Vec3 arm = Vec3(cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5) - 0.5 * arrivals.c;
+        arm -= blocks[b].centre();
+        if (lattice.D == 2) arm[2] = 0.0;
+        arrivals.arms.push_back(arm);
       }
     });
+  }
 }
 
-std::vector<BodyLoad> BlockLoads::loads(const Fluid& fluid) const {
+std::vector<BodyLoad> BlockLoads::loads() const {
   std::vector<BodyLoad> all(arrivals_.size());
   for (std::size_t b = 0; b < all.size(); ++b)
-    for (const auto& [cell, q, arm] : arrivals_[b]) {
-      const int* c = fluid.lattice().c[q];
-      const double twice = 2.0 * fluid.arriving(q, cell[0], cell[1], cell[2]);
-      all[b].add(twice * Vec3(c[0], c[1], c[2]), arm);
+    for (const Arrivals& arrivals : arrivals_[b]) {
+      const auto& places = fluid_.odd() ? arrivals.in_odd : arrivals.in_even;
+      double sum = 0.0;
+      Vec3 moment = Vec3::Zero();
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const double f = places[i];
+        sum += f;
+        moment += f * arrivals.arms[i];
+      }
+      all[b].force += 2.0 * sum * arrivals.c;
+      all[b].torque += 2.0 * moment.cross(arrivals.c);
     }
   return all;
 }

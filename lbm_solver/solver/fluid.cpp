@@ -8,6 +8,7 @@
 
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/base/simd.h"
+#include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/immersed/solid_fraction.h"
 
@@ -29,7 +30,8 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
                        domain(), cells(), radius_shift(choice.solid_term, domain().dimension()))),
       medium_{choice.parameters, choice.local_viscosity(), cover_.get(),
               SolidShare(choice.solid_term, choice.weight, choice.parameters)},
-      two_steps_(load_lag(choice.solid_term, choice.parameters.tau)) {
+      two_steps_(load_lag(choice.solid_term, choice.parameters.tau)),
+      fixed_two_steps_(two_steps_) {
   if (!choice.force) {
     CollisionParameters& p = choice_.parameters;
     p.force_x = p.force_y = p.force_z = 0.0;
@@ -55,6 +57,15 @@ void Fluid::vary_body_force(const InTime& in_time) {
   set_body_force();
 }
 
+void Fluid::set_body_force(const Vec3& force) {
+  BPLBM_EXPECT(choice_.force);
+  CollisionParameters& p = choice_.parameters;
+  p.force_x = force.x();
+  p.force_y = force.y();
+  p.force_z = force.z();
+  set_body_force();
+}
+
 /// That of the coming step, which is collided at the time of the present one. A ramp counts the
 /// step that ends. A kernel knows one force: while it changes, every step has a kernel of its own.
 void Fluid::set_body_force() {
@@ -69,6 +80,14 @@ void Fluid::set_body_force() {
   if (scheme_) scheme_->set_body_force(body_force());
 }
 
+void Fluid::add(const Geometry& geometry) {
+  BPLBM_EXPECT(cover_ != nullptr);
+  cover_->add(geometry);
+  Body& body = fixed_.emplace_back();
+  body.id = static_cast<std::int64_t>(fixed_.size());
+  body.centre = geometry.centre();
+}
+
 void Fluid::place(std::span<const Body> bodies) {
   BPLBM_EXPECT(has_solids());
   remember_loads();
@@ -80,12 +99,20 @@ void Fluid::place(std::span<const Body> bodies) {
 void Fluid::remember_loads() {
   if (!two_steps_.on() || scheme_ || !loads_are_new_) return;
   two_steps_.remember(bodies_, cover_->loads());
+  if (!fixed_.empty()) fixed_two_steps_.remember(fixed_, cover_->fixed_loads());
   loads_are_new_ = false;
 }
 
 std::vector<BodyLoad> Fluid::loads() const {
+  if (bodies_.empty()) return {};
   if (!two_steps_.on() || scheme_) return momentary_loads();
   return two_steps_.mean(bodies_, cover_->loads(), domain(), cells());
+}
+
+std::vector<BodyLoad> Fluid::fixed_loads() const {
+  if (fixed_.empty()) return {};
+  if (!two_steps_.on()) return cover_->fixed_loads();
+  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells());
 }
 
 namespace {
@@ -146,28 +173,36 @@ void Fluid::sweep_and_exchange(EsotericPull& stream) {
 #pragma omp barrier
 }
 
-void Fluid::advance(std::int64_t steps) {
-  if (!two_steps_.on() || bodies_.empty()) return make_steps(steps);
+void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
+  if (bodies_.empty() && fixed_.empty()) return make_steps(steps, after_each);
+  if (after_each) {  // all threads sum the loads of bodies, between two regions
+    for (; steps > 0; --steps) {
+      advance(1);
+      after_each();
+    }
+    return;
+  }
+  if (!two_steps_.on()) return make_steps(steps, {});
   remember_loads();
   if (steps > 1) {  // the load of a step needs that of the step before
-    make_steps(steps - 1);
+    make_steps(steps - 1, {});
     loads_are_new_ = true;
     remember_loads();
   }
-  make_steps(1);
+  make_steps(1, {});
   loads_are_new_ = true;
 }
 
-void Fluid::make_steps(std::int64_t steps) {
+void Fluid::make_steps(std::int64_t steps, const AfterStep& after_each) {
   for (; steps > 0 && force_in_time_.changes_after(steps_); --steps) {
-    make_steps_under_force(1);
+    make_steps_under_force(1, after_each);
     set_body_force();
   }
-  if (steps > 0) make_steps_under_force(steps);
+  if (steps > 0) make_steps_under_force(steps, after_each);
 }
 
-void Fluid::make_steps_under_force(std::int64_t steps) {
-  const bool passes = scheme_ || !patches_.empty();
+void Fluid::make_steps_under_force(std::int64_t steps, const AfterStep& after_each) {
+  const bool passes = scheme_ || !patches_.empty() || after_each;
   std::function<double(const Cell3&)> solids;
   if (cover_) solids = [this](const Cell3& c) { return cover_->solid_fraction(c[0], c[1], c[2]); };
 #pragma omp parallel
@@ -193,10 +228,14 @@ void Fluid::make_steps_under_force(std::int64_t steps) {
       {
         if (scheme_) scheme_->after_sweep(f_, stream);
         for (const auto& patch : patches_) patch->apply({f_, stream, steps_ + s, solids});
+        if (after_each) {
+          stream_.set_odd(stream.odd());
+          after_each();
+        }
       }
     }
   }
-  if (steps % 2 != 0) stream_.advance();
+  if (!after_each && steps % 2 != 0) stream_.advance();
   steps_ += steps;
 }
 
@@ -388,6 +427,11 @@ Record Fluid::save() const {
     TwoStepLoads last = two_steps_;
     if (loads_are_new_) last.remember(bodies_, cover_->loads());
     record.set("loads", last.save(*ranks_));
+    if (!fixed_.empty()) {
+      TwoStepLoads fixed = fixed_two_steps_;
+      if (loads_are_new_) fixed.remember(fixed_, cover_->fixed_loads());
+      record.set("fixed_loads", fixed.save(*ranks_));
+    }
   }
   return record;
 }
@@ -398,6 +442,7 @@ void Fluid::load(const Record& record) {
   if (scheme_) scheme_->load(record.part("scheme"));
   if (two_steps_.on()) {
     two_steps_.load(record.part("loads"));
+    if (!fixed_.empty()) fixed_two_steps_.load(record.part("fixed_loads"));
     loads_are_new_ = false;
   }
   const Cell3 n = cells().size, all = domain().cells();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -54,6 +55,9 @@ class Fluid {
   }
   /// Cells [from, to) of the box become a wall at rest. Needs a solid term in the kernel's choice.
   void add_wall(const Cell3& from, const Cell3& to) { cover_->add_wall(from, to); }
+  /// A solid of any shape that stays where it is. Needs a solid term in the kernel's choice.
+  /// @throws std::invalid_argument  see fill()
+  void add(const Geometry& geometry);
 
   /// Solids act by a scheme of its own instead of covered cells (which walls keep). One rank only.
   void use(std::unique_ptr<BodyScheme> scheme) {
@@ -62,6 +66,8 @@ class Fluid {
   }
   /// The body force of the kernel's choice changes in time as `in_time` says.
   void vary_body_force(const InTime& in_time);
+  /// Another one from the coming step on. The kernel's choice must have one.
+  void set_body_force(const Vec3& force);
   /// On a cell in the coming step.
   Vec3 body_force() const;
   /// To be called after the last wall was added.
@@ -71,10 +77,14 @@ class Fluid {
   /// Places the solids for the next step. Needs a scheme, or a solid term in the kernel's choice.
   void place(std::span<const Body> bodies);
 
-  /// Advances by one time step, or by some, in one parallel region, between which nothing is placed
-  /// or asked for. Collective.
+  /// Called after a step, by one thread while the others wait: it may ask for loads and
+  /// populations; it must place nothing, call nothing that is collective, and throw nothing.
+  using AfterStep = std::function<void()>;
+
+  /// Advances by one time step, or by some, between which nothing is placed, or asked for but by
+  /// `after_each`: in one parallel region, but for bodies whose loads are asked for. Collective.
   void step() { advance(1); }
-  void advance(std::int64_t steps);
+  void advance(std::int64_t steps, const AfterStep& after_each = {});
   std::int64_t steps() const { return steps_; }
 
   /// Loads on the placed bodies over the last step, in their order: this rank's cells' part. By
@@ -84,6 +94,8 @@ class Fluid {
   std::vector<BodyLoad> momentary_loads() const {
     return scheme_ ? scheme_->loads() : cover_->loads();
   }
+  /// Likewise on the solids that were added, about their centres, in their order.
+  std::vector<BodyLoad> fixed_loads() const;
   /// Part of a cell that solids cover, at most 1.
   double solid_fraction(int x, int y, int z = 0) const;
 
@@ -103,6 +115,14 @@ class Fluid {
   /// Population f_q - w_q that has arrived at a cell, for tests and cell passes.
   Population arriving(int q, int x, int y, int z = 0) { return stream_.arriving(f_, q, x, y, z); }
   double arriving(int q, int x, int y, int z = 0) const { return stream_.arriving(f_, q, x, y, z); }
+  /// The coming step is an odd one; a population lies at one place in all of these, at another in
+  /// the even ones.
+  bool odd() const { return stream_.odd(); }
+  Population arriving_in(bool odd, int q, int x, int y, int z = 0) {
+    EsotericPull stream = stream_;
+    stream.set_odd(odd);
+    return stream.arriving(f_, q, x, y, z);
+  }
 
   struct Extremes {
     double max_speed = 0.0;    ///< of cells with fluid, as a row shows it
@@ -132,8 +152,8 @@ class Fluid {
 
  private:
   void sweep_and_exchange(EsotericPull& stream);
-  void make_steps(std::int64_t steps);
-  void make_steps_under_force(std::int64_t steps);
+  void make_steps(std::int64_t steps, const AfterStep& after_each);
+  void make_steps_under_force(std::int64_t steps, const AfterStep& after_each);
   void set_body_force();
   void remember_loads();
   Record save_boundary(std::size_t number) const;
@@ -152,7 +172,8 @@ class Fluid {
   RowMedium medium_;
   std::unique_ptr<BodyScheme> scheme_;
   std::vector<Body> bodies_;  // as placed
-  TwoStepLoads two_steps_;
+  std::vector<Body> fixed_;   // that were added: their names and centres
+  TwoStepLoads two_steps_, fixed_two_steps_;
   bool loads_are_new_ = false;  // those in the map are of a step that two_steps_ does not know
   std::vector<std::unique_ptr<Patch>> patches_;
   std::int64_t steps_ = 0;

@@ -148,11 +148,18 @@ void choose_solids(const Scene& s, Plan& plan) {
   KernelChoice& k = plan.kernel;
   k.solid_term = "none";
   const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                  [](const ObstacleScene& o) { return !o.round; });
+                                  [](const ObstacleScene& o) { return o.block(); });
+  const bool shapes = std::any_of(s.obstacles.begin(), s.obstacles.end(),
+                                  [](const ObstacleScene& o) { return o.mesh || o.image; });
   const bool spinning = std::any_of(s.obstacles.begin(), s.obstacles.end(),
                                     [](const ObstacleScene& o) { return !o.spin.isZero(0.0); });
   if (!s.coupling && s.obstacles.empty()) return;
   if (n.scheme != "auto" && n.scheme != name_of(plan.scheme)) {
+    if (shapes)
+      throw InputError(fmt::format("{}: numerics.scheme = \"{}\" knows discs, spheres and blocks, "
+                                   "no meshes and images",
+                                   s.file, n.scheme),
+                       "take scheme = \"immersed_moving_boundary\"");
     if (n.solid_term != "auto")
       throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
                        "leave it out, or take scheme = \"immersed_moving_boundary\"");
@@ -292,7 +299,7 @@ void choose_kernel(const Scene& s, Plan& plan) {
         s.file +
             ": numerics.collision = \"recursive_regularised\" is there in double precision only",
         "take central_moment, or precision = \"double\"");
-  k.force = s.fluid.body_force.norm() > 0.0;
+  k.force = s.fluid.body_force.norm() > 0.0 || (s.coupling && s.coupling->carry_weight);
   choose_solids(s, plan);
   const Vec3 force = s.fluid.body_force * (dt * dt / dx);
   k.parameters = {.tau = 0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),

@@ -64,6 +64,10 @@ inline Fluid make_fluid(const Scene& scene, const Plan& plan) {
 /// The scene's obstacles that are discs or spheres, in lattice units, ids -1, -2, …
 std::vector<Body> obstacle_bodies(const Scene& scene, const Plan& plan);
 
+/// The scene's obstacles that are meshes or images, in its order. @throws InputError  an image is
+/// off the cells, or reaches out of the box
+std::vector<Geometry> obstacle_shapes(const Scene& scene, const Plan& plan);
+
 /// The scene's obstacles that are blocks, in its order. @throws InputError  one is off the cells
 std::vector<CellBox> obstacle_blocks(const Scene& scene, const Plan& plan);
 

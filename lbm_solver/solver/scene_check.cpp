@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/boundary/patch.h"
+#include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/driven_speed.h"
 
@@ -23,6 +25,7 @@ constexpr double kLargeGrain = 0.2;     // m, in a coupled scene
 constexpr double kLargeReynolds = 1e5;  // of a cell
 constexpr double kThinObstacle = 4.0;   // cells
 constexpr double kStepsAPeriod = 20.0;  // of an oscillation
+constexpr double kTightLayer = 3.0;     // cells
 constexpr double kTouch = 1e-3;         // overlap over a diameter that rounding may make
 
 std::string place_text(const Scene& s, const Vec3& x) {
@@ -97,6 +100,7 @@ Vec3 apart(const Scene& s, const Vec3& a, const Vec3& b) {
 double depth_in(const Scene& s, const ObstacleScene& o, const Vec3& x, double r) {
   if (o.round && o.hollow) return (apart(s, o.centre, x).norm() + r - 0.5 * o.diameter) / (2.0 * r);
   if (o.round) return (0.5 * o.diameter + r - apart(s, o.centre, x).norm()) / (2.0 * r);
+  if (!o.block()) return 0.0;  // of a mesh or an image the cells know
   Vec3 outside = Vec3::Zero();
   for (int k = 0; k < s.box.dimension; ++k)
     outside[k] = std::max({o.from[k] - x[k], x[k] - o.to[k], 0.0});
@@ -116,18 +120,46 @@ void check_starts_in_obstacles(const Scene& s) {
             "move the particle or the obstacle");
 }
 
+void check_inside(const Scene& s, const Vec3& x, const std::string& what) {
+  for (int k = 0; k < s.box.dimension; ++k) {
+    const double lo = s.box.origin[k], hi = lo + s.box.size[k];
+    if (x[k] < lo || x[k] > hi)
+      throw InputError(s.file + ": " + what, place_text(s, x) + " lies outside the box",
+                       fmt::format("the box is {:.6g} … {:.6g} m in {}", lo, hi, "xyz"[k]));
+  }
+}
+
 void check_points(const Scene& s) {
-  for (const Vec3& x : s.output.points)
-    for (int k = 0; k < s.box.dimension; ++k) {
-      const double lo = s.box.origin[k], hi = lo + s.box.size[k];
-      if (x[k] < lo || x[k] > hi)
-        throw InputError(s.file + ": output.points", place_text(s, x) + " lies outside the box",
-                         fmt::format("the box is {:.6g} … {:.6g} m in {}", lo, hi, "xyz"[k]));
-    }
+  for (const Vec3& x : s.output.points) check_inside(s, x, "output.points");
+}
+
+void check_sensors(const Scene& s) {
+  std::set<std::string> names;
+  for (const SensorScene& sensor : s.output.sensors) {
+    const std::string what = fmt::format("sensor \"{}\"", sensor.name);
+    if (!names.insert(sensor.name).second)
+      throw InputError(s.file + ": " + what, "is the name of two sensors",
+                       "each has a table of its own: choose another name");
+    check_inside(s, sensor.from, what);
+    check_inside(s, sensor.to, what);
+    for (int k = 0; k < s.box.dimension; ++k)
+      if (sensor.kind == SensorScene::Kind::Plane && k != sensor.axis &&
+          !(sensor.from[k] < sensor.to[k]))
+        throw InputError(s.file + ": " + what,
+                         fmt::format("is empty: from {:.6g} to {:.6g} m in {}", sensor.from[k],
+                                     sensor.to[k], "xyz"[k]),
+                         "give the lower corner as from, the upper as to");
+  }
+  const auto& average = s.output.average;
+  if (average && average->from >= s.end_time)
+    throw InputError(
+        s.file + ": average.from",
+        fmt::format("= {:.6g} s is not before the end at {:.6g} s", average->from, s.end_time),
+        "average from an earlier time on");
 }
 
 void check_obstacle(const Scene& s, const ObstacleScene& o) {
-  if (!o.round) return;  // blocks are checked with their cells
+  if (!o.round) return;  // blocks and images are checked with their cells, meshes when read
   for (int k = 0; k < s.box.dimension; ++k) {
     const double lo = s.box.origin[k], hi = lo + s.box.size[k], r = 0.5 * o.diameter;
     if (o.centre[k] + r <= lo || o.centre[k] - r >= hi)
@@ -146,6 +178,8 @@ Range extent(const Scene& s, const BoundaryScene& b, int k) {
   return {b.from[k].value_or(lo), b.to[k].value_or(lo + s.box.size[axis])};
 }
 
+constexpr const char* kSideNames[] = {"left", "right", "bottom", "top", "back", "front"};
+
 void check_boundaries(const Scene& s) {
   for (std::size_t i = 0; i < s.boundaries.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -156,10 +190,10 @@ void check_boundaries(const Scene& s) {
         shared = shared && std::min(first.hi, second.hi) > std::max(first.lo, second.lo);
       }
       if (shared)
-        throw InputError(
-            s.file + ": boundary",
-            fmt::format("the {}. and the {}. lie on the same part of a side", j + 1, i + 1),
-            "part them with from and to, or leave one out");
+        throw InputError(s.file,
+                         fmt::format("boundaries {} and {} overlap on side \"{}\"", j + 1, i + 1,
+                                     kSideNames[static_cast<int>(a.side)]),
+                         "part them with from and to, or leave one out");
     }
 }
 
@@ -247,6 +281,11 @@ void check_frequencies(const Scene& s, Plan& plan) {
   for (const BoundaryScene& b : s.boundaries)
     check_frequency(s, b.frequency, "boundary.frequency", plan);
   check_frequency(s, s.fluid.body_force_frequency, "fluid.body_force_frequency", plan);
+  const bool varies = s.fluid.body_force_frequency > 0.0 || !s.fluid.body_force_table.times.empty();
+  if (varies && s.coupling && s.coupling->carry_weight)
+    throw InputError(s.file + ": coupling.carry_weight",
+                     "would change in time with the body force, and the particles' weight does not",
+                     "leave it out, or take a steady body force");
 }
 
 /// Keys that have no effect in this scene.
@@ -294,8 +333,14 @@ void check_sizes(const Scene& s, Plan& plan) {
                     "flow of its own; are lengths in metres and the viscosity in m²/s?",
                     plan.reynolds_cell));
   for (const ObstacleScene& o : s.obstacles) {
+    if (const double cells = o.mesh ? o.mesh->thickness / plan.units.dx : 0.0;
+        cells > 0.0 && cells < kTightLayer)
+      plan.warnings.push_back(fmt::format(
+          "obstacle.thickness = {:.4g} m is {:.3g} cells: fluid seeps through a layer of "
+          "less than {}, where no cell is covered whole",
+          o.mesh->thickness, cells, kTightLayer));
     double width = o.diameter;
-    if (!o.round) width = (o.to - o.from).head(s.box.dimension).minCoeff();
+    if (o.block()) width = (o.to - o.from).head(s.box.dimension).minCoeff();
     if (o.grain || o.hollow || !o.round || width >= kThinObstacle * plan.units.dx) continue;
     plan.warnings.push_back(
         fmt::format("the obstacle at {} is {:.2g} cells wide: the flow past it is not resolved; "
@@ -321,7 +366,8 @@ void check_overlaps(const Scene& s, Plan& plan) {
 void check_viscosity(const Scene& s, Plan& plan) {
   if (s.fluid.viscosity > kThick)
     plan.warnings.push_back(fmt::format(
-        "fluid.kinematic_viscosity = {:.3g} m²/s is that of tar (water: 1e-6): is its unit right?",
+        "fluid.kinematic_viscosity = {:.3g} m²/s is unusually large for a liquid (water: 1e-6); "
+        "kinematic viscosity is in m²/s",
         s.fluid.viscosity));
 }
 
@@ -358,9 +404,48 @@ void check_output(const Scene& s, Plan& plan) {
                     s.output.fields_every, frames, 1e-9 * bytes));
 }
 
+/// A force can carry the weight only where nothing else does.
+void check_carried_weight(const Scene& s) {
+  if (!s.coupling || !s.coupling->carry_weight) return;
+  for (int k = 0; k < s.box.dimension; ++k)
+    if (s.fluid.gravity[k] != 0.0 && s.box.sides[k] != SideKind::Periodic)
+      throw InputError(
+          s.file + ": coupling.carry_weight",
+          fmt::format("stands beside walls across {}, along which gravity acts: the "
+                      "walls carry the weight",
+                      "xyz"[k]),
+          fmt::format("make box.sides_{} \"periodic\", or leave the key out", "xyz"[k]));
+  if (s.fluid.body_force_ramp > 0.0)
+    throw InputError(s.file + ": coupling.carry_weight",
+                     "stands beside fluid.body_force_ramp, which would delay it too",
+                     "leave one of them out");
+}
+
+/// Particles that the scene starts with their centres in a mesh or an image.
+void check_starts_in_shapes(const Scene& s, const Plan& plan) {
+  if (!s.particles || s.particles->start.empty()) return;
+  for (const Geometry& shape : obstacle_shapes(s, plan))
+    for (const Vec3& x : s.particles->start) {
+      const Vec3 at = plan.units.to_lattice_position(x);
+      Block cell = Block::whole(plan.domain);
+      for (int k = 0; k < 3; ++k) {
+        cell.begin[k] = std::clamp(static_cast<int>(at[k]), 0, plan.domain.cells()[k] - 1);
+        cell.size[k] = 1;
+      }
+      double fraction = 0.0;
+      fill(shape, plan.domain, cell, {},
+           [&](const FractionSpan& span) { fraction += span.fractions.front(); });
+      if (fraction > 0.5)
+        throw InputError(s.file + ": particles.start",
+                         place_text(s, x) + " lies in an obstacle's mesh or image",
+                         "move the particle or the obstacle");
+    }
+}
+
 }  // namespace
 
 void check_places(const Scene& s) {
+  check_carried_weight(s);
   if (s.particles) {
     check_particles(s);
     check_starts(s);
@@ -368,6 +453,7 @@ void check_places(const Scene& s) {
   }
   for (const ObstacleScene& o : s.obstacles) check_obstacle(s, o);
   check_points(s);
+  check_sensors(s);
   check_boundaries(s);
 }
 
@@ -379,6 +465,7 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_frequencies(s, plan);
   check_idle_keys(s, plan);
   check_overlaps(s, plan);
+  check_starts_in_shapes(s, plan);
   if (s.coupling) check_gravity(s, plan);
   if (s.coupling) check_viscosity(s, plan);
   if (s.coupling) check_contacts(s, plan);

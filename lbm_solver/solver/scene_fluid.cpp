@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/solver/plan.h"
 
 namespace lbm {
@@ -91,6 +93,40 @@ CellBox cells_of(const Scene& s, const Plan& p, const ObstacleScene& o) {
   return box;
 }
 
+MeshSolid solid_of(const Plan& p, const MeshScene& mesh) {
+  TriangleMesh surface = *mesh.surface;
+  for (Vec3& v : surface.vertices) v = p.units.to_lattice_position(v);
+  return {std::make_shared<const TriangleMesh>(std::move(surface)), mesh.hollow};
+}
+
+/// A voxel is a whole number of cells wide, or a cell of voxels.
+VoxelSolid solid_of(const Scene& s, const Plan& p, const ImageScene& image) {
+  VoxelSolid solid;
+  solid.voxels = image.voxels;
+  const double wide = image.voxel / p.units.dx, times = std::max(wide, 1.0 / wide);
+  if (std::abs(times - std::round(times)) > 1e-6 * times)
+    throw InputError(
+        fmt::format("{}: obstacle.voxel = {:.6g} m is {:.6g} cells", s.file, image.voxel, wide),
+        "take a cell that is a whole number of voxels, or a voxel of whole cells");
+  (wide > 1.0 ? solid.finer : solid.coarser) = static_cast<int>(std::lround(times));
+  for (int k = 0; k < s.box.dimension; ++k) {
+    const int voxels = image.voxels->size[k];
+    if (voxels % solid.coarser != 0)
+      throw InputError(s.file + ": obstacle.image",
+                       fmt::format("has {} voxels along {}, and {} of them make a cell", voxels,
+                                   "xyz"[k], solid.coarser),
+                       "cut it to whole cells with cut_from and cut_to");
+    solid.at[k] = border(s, p, image.at[k], k, "obstacle.at");
+    const int end = solid.at[k] + solid.cells(k), n = p.domain.cells()[k];
+    if (solid.at[k] < 0 || end > n)
+      throw InputError(s.file + ": obstacle.image",
+                       fmt::format("takes cells {} … {} along {}, the box has {}", solid.at[k], end,
+                                   "xyz"[k], n),
+                       "move it, or cut it with cut_from and cut_to");
+  }
+  return solid;
+}
+
 /// Velocity and pressure deviation of the initial state, lattice units, at a place in units of the
 /// box.
 struct Start {
@@ -119,6 +155,13 @@ Start start(const InitialScene& i, const Units& units, double x, double y) {
   return {0.0, {0.0, 0.0}};
 }
 
+void add_shape(const Scene& s, const Geometry& shape, Fluid& fluid) try {
+  fluid.add(shape);
+} catch (const std::invalid_argument& error) {
+  throw InputError(s.file + ": obstacle.mesh", error.what(),
+                   "turn it outwards, or leave the inner shell out");
+}
+
 }  // namespace
 
 std::vector<Body> obstacle_bodies(const Scene& s, const Plan& p) {
@@ -134,8 +177,17 @@ std::vector<Body> obstacle_bodies(const Scene& s, const Plan& p) {
 std::vector<CellBox> obstacle_blocks(const Scene& s, const Plan& p) {
   std::vector<CellBox> blocks;
   for (const ObstacleScene& o : s.obstacles)
-    if (!o.round) blocks.push_back(cells_of(s, p, o));
+    if (o.block()) blocks.push_back(cells_of(s, p, o));
   return blocks;
+}
+
+std::vector<Geometry> obstacle_shapes(const Scene& s, const Plan& p) {
+  std::vector<Geometry> shapes;
+  for (const ObstacleScene& o : s.obstacles) {
+    if (o.mesh) shapes.push_back({solid_of(p, *o.mesh)});
+    if (o.image) shapes.push_back({solid_of(s, p, *o.image)});
+  }
+  return shapes;
 }
 
 Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
@@ -145,6 +197,7 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
     if (s.box.pressure_jump[axis] != 0.0)
       add_pressure_jump(p, axis, s.box.pressure_jump[axis], fluid);
   for (const CellBox& block : obstacle_blocks(s, p)) fluid.add_wall(block.from, block.to);
+  for (const Geometry& shape : obstacle_shapes(s, p)) add_shape(s, shape, fluid);
   if (p.scheme != SolidScheme::ImmersedMovingBoundary)
     fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(), s.numerics.spring_stiffness));
   const InTime force =

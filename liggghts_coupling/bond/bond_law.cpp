@@ -80,6 +80,68 @@ void damp(PairResponse& r, const PairMotion& m, double ratio, double normal_stif
   r.energy.damping += across * dot(m.tangential_velocity, m.tangential_velocity) * m.step;
 }
 
+/// The law of a bond: its springs, or its break. What is left where it breaks by shear is for
+/// unbonded().
+void bonded(PairResponse& r, PairMemory& now, const ContactLaw& contact, const BondLaw& bond,
+            const PairMotion& m) {
+  const double normal = bond.normal_stiffness * (m.overlap - now.rest_overlap);
+  const double shear = size(now.shear_force);
+  const Moments moments = split(now.moment, m.normal);
+  const double stored =
+      spring_energy(normal, bond.normal_stiffness) + spring_energy(shear, bond.shear_stiffness) +
+      spring_energy(moments.bending, bond.normal_stiffness * bond.section.gyration) +
+      spring_energy(moments.twisting, 2.0 * bond.shear_stiffness * bond.section.gyration);
+  const double per_moment =
+      bond.section.radius > 0.0 ? bond.section.radius / bond.section.gyration : 0.0;
+  const double pulled = -normal + per_moment * moments.bending;
+  const double sheared = shear + 0.5 * per_moment * moments.twisting;
+  if (pulled >= bond.tensile_strength) {
+    r.broken = Break::Tension;
+    r.break_force = pulled;
+    r.energy.released = stored;
+    now = PairMemory{};
+  } else if (sheared >= bond.shear_strength) {
+    r.broken = Break::Shear;
+    r.break_force = sheared;
+    r.energy.stiffness_change =
+        stored - contact_energy(contact, m.overlap) - spring_energy(shear, contact.shear_stiffness);
+    now.bonded = false;
+    now.rest_overlap = 0.0;
+    now.moment = {};
+  } else {
+    r.force = true;
+    r.normal = normal;
+    r.tangential = now.shear_force;
+    r.moment = now.moment;
+    r.energy.elastic = stored;
+    damp(r, m, contact.damping_ratio, bond.normal_stiffness, bond.shear_stiffness, false);
+  }
+}
+
+/// The law of surfaces in contact, which slide; apart they forget each other.
+void unbonded(PairResponse& r, PairMemory& now, const ContactLaw& contact, const PairMotion& m) {
+  const double shear = size(now.shear_force);
+  if (m.overlap <= 0.0) {
+    r.energy.friction += spring_energy(shear, contact.shear_stiffness);
+    now = PairMemory{};
+  } else {
+    r.force = true;
+    r.normal = contact_force(contact, m.overlap);
+    const double most = contact.friction * r.normal;
+    const bool slides = shear > most;
+    if (slides) {
+      r.energy.friction += spring_energy(shear, contact.shear_stiffness) -
+                           spring_energy(most, contact.shear_stiffness);
+      scale(now.shear_force, most / shear);
+    }
+    r.tangential = now.shear_force;
+    r.energy.elastic = contact_energy(contact, m.overlap) +
+                       spring_energy(std::min(shear, most), contact.shear_stiffness);
+    damp(r, m, contact.damping_ratio, contact_stiffness(contact, m.overlap),
+         contact.shear_stiffness, slides);
+  }
+}
+
 }  // namespace
 
 void make_bond(PairMemory& memory, const ContactLaw& contact, const BondLaw& bond, double overlap) {
@@ -97,62 +159,8 @@ PairResponse respond(PairMemory& memory, const ContactLaw& contact, const BondLa
         m.tangential_velocity);
   }
   if (now.bonded && bond.section.radius > 0.0 && advance) bend(now, bond, m);
-  if (now.bonded) {
-    const double normal = bond.normal_stiffness * (m.overlap - now.rest_overlap);
-    const double shear = size(now.shear_force);
-    const Moments moments = split(now.moment, m.normal);
-    const double stored =
-        spring_energy(normal, bond.normal_stiffness) + spring_energy(shear, bond.shear_stiffness) +
-        spring_energy(moments.bending, bond.normal_stiffness * bond.section.gyration) +
-        spring_energy(moments.twisting, 2.0 * bond.shear_stiffness * bond.section.gyration);
-    const double per_moment =
-        bond.section.radius > 0.0 ? bond.section.radius / bond.section.gyration : 0.0;
-    const double pulled = -normal + per_moment * moments.bending;
-    const double sheared = shear + 0.5 * per_moment * moments.twisting;
-    if (pulled >= bond.tensile_strength) {
-      r.broken = Break::Tension;
-      r.break_force = pulled;
-      r.energy.released = stored;
-      now = PairMemory{};
-    } else if (sheared >= bond.shear_strength) {
-      r.broken = Break::Shear;
-      r.break_force = sheared;
-      r.energy.stiffness_change = stored - contact_energy(contact, m.overlap) -
-                                  spring_energy(shear, contact.shear_stiffness);
-      now.bonded = false;
-      now.rest_overlap = 0.0;
-      now.moment = {};
-    } else {
-      r.force = true;
-      r.normal = normal;
-      r.tangential = now.shear_force;
-      r.moment = now.moment;
-      r.energy.elastic = stored;
-      damp(r, m, contact.damping_ratio, bond.normal_stiffness, bond.shear_stiffness, false);
-    }
-  }
-  if (!now.bonded && r.broken != Break::Tension) {
-    const double shear = size(now.shear_force);
-    if (m.overlap <= 0.0) {
-      r.energy.friction += spring_energy(shear, contact.shear_stiffness);
-      now = PairMemory{};
-    } else {
-      r.force = true;
-      r.normal = contact_force(contact, m.overlap);
-      const double most = contact.friction * r.normal;
-      const bool slides = shear > most;
-      if (slides) {
-        r.energy.friction += spring_energy(shear, contact.shear_stiffness) -
-                             spring_energy(most, contact.shear_stiffness);
-        scale(now.shear_force, most / shear);
-      }
-      r.tangential = now.shear_force;
-      r.energy.elastic = contact_energy(contact, m.overlap) +
-                         spring_energy(std::min(shear, most), contact.shear_stiffness);
-      damp(r, m, contact.damping_ratio, contact_stiffness(contact, m.overlap),
-           contact.shear_stiffness, slides);
-    }
-  }
+  if (now.bonded) bonded(r, now, contact, bond, m);
+  if (!now.bonded && r.broken != Break::Tension) unbonded(r, now, contact, m);
   if (advance) memory = now;
   return r;
 }

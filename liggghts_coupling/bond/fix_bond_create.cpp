@@ -22,7 +22,7 @@
 #include "liggghts_coupling/bond/bond_book.h"
 #include "liggghts_coupling/bond/leaving.h"
 #include "liggghts_coupling/bond/pair_property.h"
-#include "protocol/input_file.h"
+#include "protocol/program/input_file.h"
 
 namespace dem {
 namespace {
@@ -168,6 +168,36 @@ void FixBondCreate::init() {
 
 bool FixBondCreate::is_first() const {
   return modify->find_fix_style_strict(style, 0) == this;
+}
+
+void FixBondCreate::setup_pre_exchange() {
+  refuse_other_ids();
+  count_leaving();
+}
+
+void FixBondCreate::post_run() {
+  between_runs_ = true;
+  if (!is_first()) return;
+  for (int i = 0; i < atom->nlocal; ++i)
+    ids_[{atom->x[i][0], atom->x[i][1], atom->x[i][2]}] = atom->tag[i];
+}
+
+/// LIGGGHTS knows the bonds of a particle by its id and those of its partners.
+void FixBondCreate::refuse_other_ids() {
+  const auto ids = std::exchange(ids_, {});
+  if (!is_first() || sum(BondBook::instance().tally.created, world) == 0) return;
+  long others = 0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const auto before = ids.find({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
+    others += before != ids.end() && before->second != atom->tag[i];
+  }
+  others = sum(others, world);
+  if (others > 0)
+    error->fix_error(FLERR, this,
+                     fmt::format("{} particles have another id than in the last run, and bonds are "
+                                 "known by ids; write 'delete_atoms … compress no'",
+                                 others)
+                         .c_str());
 }
 
 /// Counts the bonds of particles that the coming exchange takes out of the box. LIGGGHTS keeps the

@@ -7,6 +7,8 @@
 #include <fix.h>
 // clang-format on
 
+#include <array>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -32,10 +34,10 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
 
   int setmask() override;
   void init() override;
-  void setup_pre_exchange() override { count_leaving(); }
+  void setup_pre_exchange() override;
   void pre_exchange() override { count_leaving(); }
   void setup(int vflag) override;
-  void post_run() override { between_runs_ = true; }
+  void post_run() override;
   void write_restart(FILE* file) override;
   void restart(char* buffer) override;
 
@@ -44,6 +46,7 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
   Notch read_notch(char** ends);
   void agree_on_spread(double spread, unsigned long seed);
   bool is_first() const;
+  void refuse_other_ids();
   void count_leaving();
   void count_lost() const;
   void tell(long made, long found) const;
@@ -51,7 +54,8 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
   void check_reach();
   bool done_ = false;          ///< bonds were made, in this run or before the restart
   bool between_runs_ = false;  ///< the script has had time to take particles out
-  long wanted_ = -1;           ///< pairs of the list
+  std::map<std::array<double, 3>, int> ids_;  ///< by place, of this process, at the end of a run
+  long wanted_ = -1;                          ///< pairs of the list
 };
 
 }  // namespace dem

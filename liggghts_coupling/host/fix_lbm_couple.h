@@ -6,10 +6,8 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "protocol/session.h"
-#include "protocol/solid_parts.h"
+#include "protocol/solid/particle_coupling.h"
 
 namespace dem {
 
@@ -24,7 +22,7 @@ namespace dem {
 /// which a run may be stopped, LIGGGHTS is set up anew at that step, as a restart would, and writes
 /// its restart file where the fluid asks for one: the run goes on to the bit as one that was
 /// started from it. The ledger of broken bonds is part of it.
-class FixLbmCouple final : public LAMMPS_NS::Fix {
+class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
  public:
   FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
   ~FixLbmCouple() override;
@@ -34,7 +32,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void setup_pre_exchange() override;
   void pre_exchange() override { count_leaving(); }
   void setup(int vflag) override;
-  void post_force(int vflag) override;
+  void post_force(int) override { coupling_->add_loads(); }
   void end_of_step() override;
   void post_run() override;
 
@@ -62,56 +60,45 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   double memory_usage() override;
 
  private:
-  /// Of a particle: force and torque; the id and epoch that the fluid was told last; place and
-  /// radius at the end of the last run.
-  static constexpr int kValues = 6, kId = 6, kEpoch = 7, kKept = 8, kPlace = 8, kRadius = 11,
-                       kColumns = 12;
+  /// Of a particle: what the coupling keeps, also in restart files; place and radius at the end of
+  /// the last run.
+  static constexpr int kLoads = 6, kKept = protocol::kHeldColumns, kPlace = kKept,
+                       kRadius = kPlace + 3, kColumns = kRadius + 1;
 
-  void parse(int narg, char** arg);
-  void begin_recording() const;
-  void gather();
-  void count_leaving();
-  protocol::SolidReport report() const;
-  protocol::Hello hello() const;
+  // what the coupling asks of LIGGGHTS
+  protocol::EngineParticles particles() override;
+  MPI_Comm communicator() const override { return world; }
+  std::int64_t step_number() const override;
+  protocol::Setting setting() const override;
+  std::optional<protocol::SolidReport> report() const override;
+  int index_of(std::int64_t id) const override;
+  void set_up_again() override;
+  void write_part(protocol::SolidParts& parts, std::int64_t interval) override;
+  void note_wishes(std::uint32_t flags) override;
+  void note_failure(const std::exception& error) override;
+  void note_end() override;
+
   void begin();
   void go_on() const;
   void begin_anew_where_moved() const;
-  void send_states(std::uint32_t flags = protocol::kContinue);
-  protocol::SolidSession::Reply collect();
-  void take_loads(bool add_change);
-  void hold(int i, const protocol::Load& load, bool add_change);
-  void forward(std::vector<protocol::Load>& orphans, bool add_change);
-  void settle_again();
-  void write_checkpoint();
-  void keep_last_state(const std::exception& error);
+  void begin_recording(const std::string& record) const;
+  void count_leaving();
   void note_particles();
-  void write_part(protocol::SolidParts& parts);
+  protocol::Hello hello() const;
   [[noreturn]] void fail(const std::string& text) const;
 
-  int substeps_ = 0;
-  std::optional<double> timeout_;  ///< [s]; else the fluid's
-  std::string record_;
-  double** held_ = nullptr;  ///< [nmax][kColumns]; force [N], torque [N m] of this interval, …
-  int held_still_ = 0;       ///< groups whose forces fix freeze or setforce sets
-  LAMMPS_NS::bigint first_step_ = 0, step_ = 0;  ///< of the first run; the one that ended last
-  LAMMPS_NS::bigint marked_ = -1;                ///< step of which places are kept
-  double time_step_ = 0.0;                       ///< [s], of all runs
-  double waited_before_ = 0.0;                   ///< [s], until the first step
-  std::int64_t interval_ = 0;
+  std::optional<protocol::ParticleCoupling> coupling_;
+  double** held_ = nullptr;        ///< [nmax][kColumns]; force [N], torque [N m], …
+  int frozen_groups_ = 0;          ///< whose forces fix freeze or setforce sets
+  LAMMPS_NS::bigint step_ = 0;     ///< of the run that ended last
+  LAMMPS_NS::bigint marked_ = -1;  ///< step of which places are kept
+  double time_step_ = 0.0;         ///< [s], of all runs
+  double waited_before_ = 0.0;     ///< [s], until the first step
   std::int64_t left_ = 0;  ///< particles, since the beginning of the coupled run, of this process
-  bool stop_asked_ = false, settle_asked_ = false, checkpoint_asked_ = false;
-  bool overlapped_ = false;  ///< loads are taken at the end of their interval
-  bool underway_ = false;    ///< loads of the states sent last have not been taken
-  bool set_up_ = false;
-  bool settling_again_ = false;  ///< in settle_again
   /// Smallest and largest of each type that was there when a run began, where the scene has
   /// checkpoints [m]: a run that goes on must find its neighbours in the same way when they have
   /// left.
   std::map<int, protocol::Range> type_radii_;
-  std::optional<protocol::SolidParts> parts_;  ///< once the two have agreed
-  std::vector<protocol::State> states_;        // buffers of one exchange
-  std::vector<protocol::Shape> shapes_;
-  std::vector<int> local_;
 };
 
 }  // namespace dem

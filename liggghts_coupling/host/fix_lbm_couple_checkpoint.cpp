@@ -2,12 +2,7 @@
 /// The solid's part of a checkpoint, and of what is kept at a fault.
 #include <atom.h>
 #include <comm.h>
-#include <domain.h>
 #include <fmt/format.h>
-#include <integrate.h>
-#include <modify.h>
-#include <neighbor.h>
-#include <update.h>
 #include <write_restart.h>
 
 #include <algorithm>
@@ -19,8 +14,8 @@
 #include "liggghts_coupling/bond/bond_ledger.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
-#include "protocol/file_catcher.h"
-#include "protocol/program.h"
+#include "protocol/program/file_catcher.h"
+#include "protocol/program/program.h"
 
 namespace dem {
 
@@ -30,34 +25,9 @@ constexpr const char* kHeading = "BPLBM solid 1";
 
 }  // namespace
 
-/// What a run does when it begins, in the order of LIGGGHTS' Verlet::setup, in the middle of one:
-/// particles sorted and distributed, neighbours found, forces computed. Ends in setup() above.
-void FixLbmCouple::settle_again() {
-  settling_again_ = true;
-  settle_asked_ = false;
-  modify->setup_pre_exchange();
-  domain->pbc();
-  domain->reset_box();
-  comm->setup();
-  if (neighbor->style) neighbor->setup_bins();
-  comm->exchange();
-  if (atom->sortfreq > 0) atom->sort();
-  comm->borders();
-  modify->setup_pre_neighbor();
-  neighbor->build();
-  neighbor->ncalls = 0;
-  update->integrate->setup_minimal(0);
-  settling_again_ = false;
-}
-
-void FixLbmCouple::write_checkpoint() {
-  write_part(*parts_);
-  MPI_Barrier(world);  // it is there before any rank says so
-}
-
 /// At a fault, where the scene has checkpoints: this interval's particles, if they are finite, so
 /// that --restart=fault can go on from them where the fluid kept its part of the same interval.
-void FixLbmCouple::keep_last_state(const std::exception& error) {
+void FixLbmCouple::note_failure(const std::exception& error) {
   const bool everywhere = comm->nprocs == 1 || dynamic_cast<const protocol::PeerFault*>(&error);
   if (!(Coupling::instance().session->fluid().features & protocol::kCheckpoints) || !everywhere)
     return;
@@ -68,21 +38,21 @@ void FixLbmCouple::keep_last_state(const std::exception& error) {
       if (!std::isfinite(atom->x[i][k] + atom->v[i][k] + atom->omega[i][k])) finite = 0;
   MPI_Allreduce(MPI_IN_PLACE, &finite, 1, MPI_INT, MPI_MIN, world);
   if (!finite) return;
-  protocol::SolidParts fault = parts_->beside("fault");
+  protocol::SolidParts fault = coupling_->parts().beside("fault");
   try {
-    write_part(fault);
-  } catch (const protocol::ProtocolError& second) {  // the first is what must be heard
+    write_part(fault, coupling_->interval());
+  } catch (const protocol::ProgramError& second) {  // the first is what must be heard
     fmt::print(stderr, "liggghts | its last state is not kept: {}\n", second.what());
   }
 }
 
 /// LIGGGHTS' restart file of this interval.
-void FixLbmCouple::write_part(protocol::SolidParts& parts) {
+void FixLbmCouple::write_part(protocol::SolidParts& parts, std::int64_t interval) {
   std::optional<protocol::FileCatcher> file;  // rank 0 writes for all
   if (comm->me == 0) file.emplace();
   std::string name = file ? file->path() : "";
   LAMMPS_NS::WriteRestart(lmp).write(name.data());
-  if (file) parts.keep(interval_, file->take());
+  if (file) parts.keep(interval, file->take());
 }
 
 void FixLbmCouple::note_particles() {
@@ -111,7 +81,7 @@ void FixLbmCouple::write_restart(FILE* file) {
   std::int64_t left = 0;
   MPI_Reduce(&left_, &left, 1, MPI_INT64_T, MPI_SUM, 0, world);
   if (comm->me != 0) return;
-  std::string text = fmt::format("{}\ninterval {}\n", kHeading, interval_);
+  std::string text = fmt::format("{}\ninterval {}\n", kHeading, coupling_->interval());
   for (const auto& [type, radii] : type_radii_)
     text += fmt::format("radii {} {} {}\n", type, radii.lo, radii.hi);
   text += fmt::format("left {}\n", left) + ledger;

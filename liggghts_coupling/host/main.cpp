@@ -10,9 +10,11 @@
 #include <variable.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,9 +25,9 @@
 #include "liggghts_coupling/host/register_styles.h"
 #include "liggghts_coupling/host/screen_ear.h"
 #include "liggghts_coupling/host/script_names.h"
-#include "protocol/input_file.h"
-#include "protocol/program.h"
-#include "protocol/watch.h"
+#include "protocol/program/input_file.h"
+#include "protocol/program/program.h"
+#include "protocol/program/watch.h"
 
 namespace dem {
 
@@ -80,7 +82,7 @@ void check_script(const Arguments& arguments) {
   const std::string script = option(arguments, "-in", "-i");
   const std::string problem = script.empty() ? "" : protocol::why_unreadable(script);
   if (problem.empty()) return;
-  throw protocol::ProtocolError(
+  throw protocol::ProgramError(
       fmt::format("{}: {}; give -in SCRIPT, or start in a folder with in.liggghts", script,
                   problem),
       protocol::kBadInput);
@@ -91,11 +93,36 @@ struct Output {
   std::string script, log, screen;
   LAMMPS_NS::LAMMPS* lammps = nullptr;
   ScreenEar ear;
+  std::set<std::string> warned;  // what was said already
 
   void listen();
+  void warn(const std::string& line);
 
   std::string reason();
 };
+
+/// Gives access to the line of the script that LIGGGHTS is at.
+struct ScriptLine : LAMMPS_NS::Input {
+  static std::string of(const LAMMPS_NS::LAMMPS* lammps) {
+    const char* line = lammps && lammps->input ? lammps->input->*&ScriptLine::line : nullptr;
+    return line ? line : "";
+  }
+};
+
+/// What LIGGGHTS warns of, for the user's terminal and the log, each once with its line of the
+/// script.
+void Output::warn(const std::string& line) {
+  constexpr std::size_t most = 50;
+  std::string text = without_source(line);
+  if (const auto at = text.find(": "); at != std::string::npos) text.erase(0, at + 2);
+  std::string cause = ScriptLine::of(lammps);
+  while (!cause.empty() && std::isspace(static_cast<unsigned char>(cause.back()))) cause.pop_back();
+  text = fmt::format("liggghts | warning | {} (at the line: {})\n", text, cause);
+  if (warned.size() > most || !warned.insert(text).second) return;
+  if (warned.size() > most) text = "liggghts | warning | there are more; they are not told\n";
+  std::fputs(text.c_str(), stderr);
+  if (lammps && lammps->logfile) std::fputs(text.c_str(), lammps->logfile);
+}
 
 /// Why LIGGGHTS has ended itself. Of a variable that is not there, it does not say the name.
 std::string Output::reason() {
@@ -123,6 +150,7 @@ void Output::listen() {
   std::FILE* const before = lammps->screen;
   std::FILE* const stream = ear.listen(screen.empty() ? before : nullptr);
   if (!stream) return;
+  ear.tell_warnings([this](const std::string& line) { warn(line); });
   lammps->screen = lammps->universe->uscreen = stream;
   if (!screen.empty() && before) std::fclose(before);
   screen.clear();

@@ -2,6 +2,7 @@
 #include "liggghts_coupling/host/screen_ear.h"
 
 #include <regex>
+#include <utility>
 
 namespace dem {
 namespace {
@@ -33,7 +34,8 @@ void ScreenEar::take(const char* text, std::size_t size) {
       continue;
     }
     if (line_.starts_with("ERROR")) last_error_ = line_;
-    line_.clear();
+    const std::string whole = std::exchange(line_, {});
+    if (tell_ && whole.starts_with("WARNING")) tell_(whole);
   }
 }
 

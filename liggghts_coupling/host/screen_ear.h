@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstdio>
+#include <functional>
 #include <string>
+#include <utility>
 
 namespace dem {
 
-/// Stands between LIGGGHTS and its screen: passes on what is written and remembers the last line
-/// that begins with ERROR. An error of one process goes to the screen alone, in no log.
+/// Stands between LIGGGHTS and its screen: passes on what is written, remembers the last line that
+/// begins with ERROR, and tells of each that begins with WARNING. What one process says goes to the
+/// screen alone, in no log.
 class ScreenEar {
  public:
   /// What LIGGGHTS is to write to. It closes it; this object must live until then.
@@ -15,16 +18,20 @@ class ScreenEar {
   /// @return null where the system has no memory for a stream
   std::FILE* listen(std::FILE* screen);
 
+  /// @param tell  called with each line that begins with WARNING, without its end
+  void tell_warnings(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
+
   const std::string& last_error() const { return last_error_; }
 
  private:
   void take(const char* text, std::size_t size);
 
   std::FILE* screen_ = nullptr;
+  std::function<void(const std::string&)> tell_;
   std::string line_, last_error_;
 };
 
-/// An error line of LIGGGHTS without the place in its source, which ends it: " (pair.cpp:12)".
+/// A line of LIGGGHTS without the place in its source, which ends it: " (pair.cpp:12)".
 std::string without_source(const std::string& error);
 
 }  // namespace dem

@@ -11,7 +11,8 @@
 #include <array>
 #include <cmath>
 
-#include "protocol/errors.h"
+#include "protocol/solid/particle_coupling.h"
+#include "protocol/wire/errors.h"
 
 namespace dem {
 namespace {
@@ -23,7 +24,7 @@ constexpr std::array kClumps{"multisphere", "multisphere/nointegration", "multis
 
 template <class... Args>
 [[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) {
-  throw protocol::ProtocolError(
+  throw protocol::ProgramError(
       "fix lbm/couple: " + fmt::format(format, std::forward<Args>(args)...), protocol::kBadInput);
 }
 
@@ -87,14 +88,12 @@ std::string ScriptChecks::fix_of_style(const std::string& style) const {
 }
 
 std::vector<protocol::Ball> ScriptChecks::balls(int groupbit) const {
-  std::vector<protocol::Ball> balls;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const double* x = atom->x[i];
-    const bool usable = std::isfinite(x[0] + x[1] + x[2]) && atom->radius[i] > 0.0;
-    if ((atom->mask[i] & groupbit) && usable)
-      balls.push_back({atom->tag[i], {x[0], x[1], x[2]}, atom->radius[i]});
-  }
-  return balls;
+  return protocol::balls_of({.count = atom->nlocal,
+                             .id = atom->tag,
+                             .mask = atom->mask,
+                             .radius = atom->radius,
+                             .x = atom->x},
+                            groupbit);
 }
 
 protocol::Hello ScriptChecks::box() const {

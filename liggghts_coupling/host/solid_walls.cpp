@@ -3,14 +3,21 @@
 
 #include <atom.h>
 #include <error.h>
+#include <fix_mesh_surface.h>
 #include <fix_wall_gran.h>
 #include <fmt/format.h>
 #include <modify.h>
 #include <primitive_wall.h>
+#include <tri_mesh.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
+
+#include "protocol/wire/walls.h"
 
 namespace dem {
 namespace {
@@ -48,11 +55,33 @@ bool mark_side(const Plane& plane, Hello& hello) {
   return true;
 }
 
-void tell_granular_wall(LAMMPS_NS::FixWallGran& fix, Hello& hello) {
+/// The box around a mesh, of all ranks.
+std::string extent_text(LAMMPS_NS::TriMesh& mesh, MPI_Comm ranks) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  std::array<double, 6> most;  // of x, y, z and of -x, -y, -z
+  most.fill(-far);
+  for (int t = 0; t < mesh.sizeLocal(); ++t)
+    for (int corner = 0; corner < mesh.numNodes(); ++corner) {
+      double x[3];
+      mesh.node_slow(t, corner, x);
+      for (int k = 0; k < 3; ++k) {
+        most[k] = std::max(most[k], x[k]);
+        most[3 + k] = std::max(most[3 + k], -x[k]);
+      }
+    }
+  MPI_Allreduce(MPI_IN_PLACE, most.data(), 6, MPI_DOUBLE, MPI_MAX, ranks);
+  for (double& m : most) m += 0.0;  // no -0
+  return protocol::mesh_text({0.0 - most[3], 0.0 - most[4], 0.0 - most[5]},
+                             {most[0], most[1], most[2]});
+}
+
+void tell_granular_wall(LAMMPS_NS::FixWallGran& fix, MPI_Comm ranks, Hello& hello) {
   if (fix.is_mesh_wall()) {
-    for (int m = 0; m < fix.n_meshes(); ++m)
-      hello.bodies.push_back(fmt::format("fix {} {} (of fix {} {})", fix.mesh_list()[m]->id,
-                                         fix.mesh_list()[m]->style, fix.id, fix.style));
+    for (int m = 0; m < fix.n_meshes(); ++m) {
+      auto* const mesh = fix.mesh_list()[m];
+      hello.bodies.push_back(fmt::format("fix {} {} (of fix {} {}), {}", mesh->id, mesh->style,
+                                         fix.id, fix.style, extent_text(*mesh->triMesh(), ranks)));
+    }
     return;
   }
   const auto plane = plane_of(*fix.primitiveWall(), hello);
@@ -72,7 +101,7 @@ void tell_walls(LAMMPS_NS::LAMMPS& lammps, Hello& hello) {
     LAMMPS_NS::Fix* fix = lammps.modify->fix[i];
     const std::string style = fix->style;
     if (auto* granular = dynamic_cast<LAMMPS_NS::FixWallGran*>(fix))
-      tell_granular_wall(*granular, hello);
+      tell_granular_wall(*granular, lammps.world, hello);
     else if (style.starts_with("wall/"))
       hello.bodies.push_back(fmt::format("fix {} {}", fix->id, style));
   }

@@ -3,6 +3,7 @@
 /// clumps, heaps, walls that only one side has. Both programs end within seconds with exit code 2.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -145,6 +146,9 @@ endfacet
 endsolid floor
 )");
   }
+  void add_to_scene(const std::string& text) {
+    std::ofstream(folder_.path() + "/scene.toml", std::ios::app) << text;
+  }
   JobResult run(const std::string& walls, const std::string& move = "fix move all nve/sphere") {
     std::string script = R"(atom_style granular
 atom_modify map array sort 0 0
@@ -217,6 +221,29 @@ TEST(OneSidedWalls, MeshesCylindersAndPlanesInsideAreNamed) {
       {"fix plate mesh/surface (of fix plates wall/gran) is a wall for the particles only",
        "fix pipe wall/gran (cylinder) is a wall for the particles only",
        "fix sieve wall/gran (plane z = 0.005 m) is a wall for the particles only"});
+}
+
+constexpr const char* kFloorMesh = "\n[[obstacle]]\nmesh = \"floor.stl\"\nthickness = 0.002\n";
+
+// The fluid makes a plate of the surface and offers it as ${mesh1}: both meet the same wall.
+TEST(OneSidedWalls, AMeshThatBothHaveIsNotNamed) {
+  Spheres spheres;
+  spheres.add_to_scene(kFloorMesh);
+  const JobResult job =
+      spheres.run(kSides + kFloor +
+                  "\nfix plate all mesh/surface file ${mesh1} type 1\nfix plates all wall/gran "
+                  "model hertz tangential history mesh n_meshes 1 meshes plate");
+  EXPECT_EQ(job.exit_code, 0) << job.output;
+  expect_warnings(job, {});
+  EXPECT_NE(job.output.find("mesh floor.stl: 12 triangles"), std::string::npos) << job.output;
+}
+
+TEST(OneSidedWalls, AMeshOfTheFluidAloneIsNamed) {
+  Spheres spheres;
+  spheres.add_to_scene(kFloorMesh);
+  expect_warnings(spheres.run(kSides + kFloor),
+                  {"obstacle: mesh from (0, 0, 0.002) to (0.012, 0.012, 0.004) m: there for the "
+                   "fluid only"});
 }
 
 TEST(Clumps, OfMultisphereAreRefusedByName) {

@@ -83,6 +83,18 @@ TEST(BondsThatLeave, WithGrainsThatTheScriptTakesOutAreLost) {
   expect_in(job.output, "left 0 lost 1");
 }
 
+// The default of delete_atoms gives the ids that are free to others, by which bonds are known.
+TEST(BondsThatLeave, WithOtherIdsAreRefused) {
+  Script script;
+  const auto job =
+      script.run(replaced(pulled_pair({}, "0 0 0"), "run 2500\n",
+                          "run 200\ngroup out id 1\ndelete_atoms group out\nrun 200\n"));
+  EXPECT_NE(job.exit_code, 0) << job.output;
+  expect_in(job.output,
+            "1 particles have another id than in the last run, and bonds are known by ids; write "
+            "'delete_atoms … compress no'");
+}
+
 /// Discs of types 1, 1, 2, 2 in a row, all touching.
 std::string two_types(const std::string& creators) {
   std::string text = head() + disc(0.35, 0.5) + disc(0.45, 0.5) + disc(0.55, 0.5) +

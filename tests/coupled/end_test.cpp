@@ -22,8 +22,10 @@ constexpr double kTimeout = 2.0;                             // of the scenes he
 constexpr double kLimit = kTimeout + 10.0 * BPLBM_PATIENCE;  // for both programs to end
 const std::string kPeer = test::kBin + "/scripted_peer solid leave ";
 const std::string kPython =
-    "env PYTHONPATH=" BPLBM_SOURCE_DIR "/tools/engines/python /usr/bin/python3 " BPLBM_SOURCE_DIR
+    "env PYTHONPATH=" BPLBM_SOURCE_DIR "/protocol/python /usr/bin/python3 " BPLBM_SOURCE_DIR
     "/tests/support/leaving_peer.py ";
+
+const std::string kC = test::kBin + "/leaving_solid ";
 
 /// A short run with a short time-out.
 class Scene : public SettlingDisc {
@@ -76,9 +78,8 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
   const auto& [name, peer, how] = GetParam();
   std::vector<std::pair<const Stage*, std::future<JobResult>>> jobs;
   for (const Stage& stage : kStages) {
-    const bool python = peer == kPython;
-    if (python && (stage.name == "hello" || stage.name == "goodbye" || stage.name == "version"))
-      continue;  // wire.py knows no goodbye, and says its hello and its answer at once
+    if (peer != kPeer && (stage.name == "hello" || stage.name == "version"))
+      continue;  // Python's and C's interfaces say their hello and their answer at once
     jobs.emplace_back(&stage, std::async(std::launch::async, [&stage, &peer = peer, &how = how] {
       const Scene scene;
       return test::run(scene.job(peer + stage.name + " " + how), scene.folder(), 30.0);
@@ -91,8 +92,12 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
       said = (how == "farewell" ? "solid rank 0 left without "
                                 : "no answer from solid rank 0 for 2 s while waiting for ") +
              stage->lacking;
+    // The library answers for its process, so the fluid knows that it does nothing any more.
+    const bool asked = peer == kC && how == "finalize" && stage->exit_code == 0;
     if (how == "exit")
       expect_end(result.get(), 1, {});
+    else if (asked)
+      expect_end(result.get(), 1, {said, "solid rank 0 did not end within 2 s, and did nothing"});
     else
       expect_end(result.get(), stage->exit_code, {said});
   }
@@ -102,10 +107,41 @@ INSTANTIATE_TEST_SUITE_P(All, LeavingSolid,
                          testing::Values(Leaving{"CppByFinalize", kPeer, "finalize"},
                                          Leaving{"CppByExit", kPeer, "exit"},
                                          Leaving{"CppWithFarewell", kPeer, "farewell"},
+                                         Leaving{"CByFinalize", kC, "finalize"},
+                                         Leaving{"CByExit", kC, "exit"},
+                                         Leaving{"CWithFarewell", kC, "farewell"},
                                          Leaving{"PythonByFinalize", kPython, "finalize"},
                                          Leaving{"PythonByExit", kPython, "exit"},
                                          Leaving{"PythonWithFarewell", kPython, "farewell"}),
                          [](const auto& info) { return info.param.name; });
+
+// A Python engine that leaves its `with` block, without a word, says goodbye.
+TEST(PythonBlock, SaysGoodbyeWhenItIsLeft) {
+  const Scene scene;
+  for (const int ranks : {1, 2})
+    expect_end(test::run(scene.job(kPython + "block farewell", ranks), scene.folder(), 30.0), 0,
+               {"ending       stopped by solid: leaving_peer ended"});
+}
+
+TEST(FailingSolid, InCTellsTheFluidAtEveryStage) {
+  std::vector<std::future<JobResult>> jobs;
+  for (const char* stage : {"connected", "agreed", "states", "running"})
+    jobs.push_back(std::async(std::launch::async, [stage] {
+      const Scene scene;
+      return test::run(scene.job(kC + stage + " fail"), scene.folder(), 30.0);
+    }));
+  for (auto& job : jobs)
+    expect_end(job.get(), 42,
+               {"leaving_solid | error | has had enough",
+                "lbm | error | the solid program stopped: has had enough"});
+}
+
+// One rank imports slowly: the others, whose own patience is a second, wait as the scene says.
+TEST(PythonStart, WaitsForAsLongAsTheSceneSays) {
+  const Scene scene;
+  const std::string solid = "env BPLBM_CONNECT_TIMEOUT=1 " + kPython + "late farewell";
+  expect_end(test::run(scene.job(solid, 1, 2), scene.folder(), 30.0), 0, {"ending       complete"});
+}
 
 TEST(LeavingFluid, EndsLiggghts) {
   Scene scene;
@@ -138,41 +174,49 @@ void PrintTo(const Phase& p, std::ostream* out) {
 
 class Stopped : public testing::TestWithParam<Phase> {
  protected:
-  static JobResult run(const Phase& phase, const std::string& program, int rank) {
+  static JobResult run(const Phase& phase, int fluid_ranks, const std::string& program, int rank) {
     SettlingDisc scene;
     scene.change_scene("timeout = 60.0", "timeout = 2.0");
     scene.change_scene("end_time = 0.04", "end_time = " + phase.end_time);
     scene.change_scene("fields_every = 0.05", "fields_every = " + phase.fields_every);
     scene.set_script(phase.before + scene.script() + phase.after);
     const std::string job =
-        mpirun({kLbm + " --progress none", 2}, {kLiggghts + " -screen none", 2});
+        mpirun({kLbm + " --progress none", fluid_ranks}, {kLiggghts + " -screen none", 2});
     return test::run("(" + job + ") & job=$!; " + phase.reached +
                          "; kill -STOP $(pgrep -x -P $job " + program + " | sort -n | sed -n " +
                          std::to_string(rank + 1) + "p); wait $job",
                      scene.folder(), 40.0);
   }
-};
 
-TEST_P(Stopped, EndsTheJobWithItsName) {
-  const Phase& phase = GetParam();
-  const double limit = kLimit + 5.0;  // of which until the stage is reached
-  std::vector<std::pair<std::string, std::future<JobResult>>> jobs;
-  for (const int rank : {0, 1}) {
-    const std::string number = std::to_string(rank);
-    jobs.emplace_back("fluid rank " + number,
-                      std::async(std::launch::async, run, phase, "lbm", rank));
-    jobs.emplace_back("solid rank " + number,
-                      std::async(std::launch::async, run, phase, "liggghts", rank));
-  }
-  for (auto& [who, job] : jobs) {
+  static void expect_named(const JobResult& result, const std::string& who) {
+    const double limit = kLimit + 5.0;  // of which until the stage is reached
     SCOPED_TRACE(who);
-    const JobResult result = job.get();
     EXPECT_FALSE(result.timed_out) << "hangs: " << result.output;
     EXPECT_LT(result.seconds, limit * BPLBM_PATIENCE) << result.output;
     EXPECT_EQ(result.exit_code, 1) << result.output;
     EXPECT_NE(result.output.find("| error | " + who + " does not answer"), std::string::npos)
         << result.output;
   }
+};
+
+TEST_P(Stopped, EndsTheJobWithItsName) {
+  std::vector<std::pair<std::string, std::future<JobResult>>> jobs;
+  for (const int rank : {0, 1}) {
+    const std::string number = std::to_string(rank);
+    jobs.emplace_back("fluid rank " + number,
+                      std::async(std::launch::async, run, GetParam(), 2, "lbm", rank));
+    jobs.emplace_back("solid rank " + number,
+                      std::async(std::launch::async, run, GetParam(), 2, "liggghts", rank));
+  }
+  for (auto& [who, job] : jobs) expect_named(job.get(), who);
+}
+
+// One after the other: with five processes each, jobs side by side would wait for the cores.
+TEST_P(Stopped, Slow_OneOfThreeAndTwo) {
+  for (const int rank : {0, 1, 2})
+    expect_named(run(GetParam(), 3, "lbm", rank), "fluid rank " + std::to_string(rank));
+  for (const int rank : {0, 1})
+    expect_named(run(GetParam(), 3, "liggghts", rank), "solid rank " + std::to_string(rank));
 }
 
 const std::string kUntilItRuns = "until [ -s out/probes.csv ]; do sleep 0.1; done; sleep 0.5";

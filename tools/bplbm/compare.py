@@ -11,6 +11,7 @@ import sys
 
 import numpy as np
 
+from bplbm.project import tool
 from bplbm.results import Run, read_table
 
 ALIKE = 1e-10
@@ -46,7 +47,7 @@ def parted(run, other):
 
 
 def main():
-    p = argparse.ArgumentParser(prog="tools/compare", description=__doc__.splitlines()[0])
+    p = argparse.ArgumentParser(prog=tool("compare"), description=__doc__.splitlines()[0])
     p.add_argument("folders", nargs="*", metavar="FOLDER", help="output folders, as out/soil_erosion")
     p.add_argument("--list", action="store_true", help="the finished runs in out/, and nothing else")
     p.add_argument("--parting", action="store_true", help="say also how long the particles go alike")

@@ -64,6 +64,21 @@ class BondGraph:
             reached.update(face for k in more for face in sides[k])
 
 
+def chain(places, seeds, reach):
+    """Of breaks in space those that hang together with a seed: array of bools. A crack goes on from a break to all that lie
+    within a reach [m] of it; where bonds are no plane graph, this stands for their pores.
+
+    places: [n][3] [m]; seeds: bools.
+    """
+    mine = np.array(seeds, dtype=bool).copy()
+    near = np.linalg.norm(places[:, None] - places[None], axis=2) < reach
+    while True:
+        grown = mine | near[:, mine].any(axis=1)
+        if (grown == mine).all():
+            return mine
+        mine = grown
+
+
 def openings(places, radii, pairs):
     """Gaps between the surfaces of pairs of discs [m], 0 where they touch."""
     a, b = np.array(pairs, dtype=int).reshape(-1, 2).T

@@ -1,11 +1,15 @@
 """Starts an MPI job, waits for it, and ends it in good order when somebody stops us."""
 
+import collections
 import ctypes
 import os
 import pathlib
+import re
 import signal
 import subprocess
+import threading
 
+MOST_LINES = 400  # of what a job says on its error output that are kept
 STOPPED = 1  # a job that was told to end: its programs leave with this code
 
 
@@ -38,6 +42,14 @@ def fluid_ranks(mpirun):
     return found
 
 
+def reason_of(text):
+    """The last error that a program told, without its name; else the last line."""
+    errors = re.findall(r"^\w+ \| error \| (.*)$", text, re.M)
+    ours = [e for e in errors if not e.startswith("the fluid program stopped")]
+    lines = [line for line in text.splitlines() if line.strip()]
+    return (ours or errors or lines or ["nothing was said"])[-1]
+
+
 class MpiJob:
     """run() returns its exit code. Ctrl-C or SIGTERM reach us alone (the job has a session of its own): the first tells
     the fluid, which ends its coupling interval, has checkpoints written where the scene has any, and leaves; the second
@@ -46,15 +58,26 @@ class MpiJob:
     def __init__(self, line, env):
         self.line, self.env = line, env
         self.stops, self.process = 0, None
+        self.said = collections.deque(maxlen=MOST_LINES)  # on its error output, line by line
+
+    def listen(self, pipe):
+        """Passes the job's error output on, and keeps its last lines."""
+        for line in pipe:
+            os.write(2, line)
+            self.said.append(line.decode(errors="replace"))
 
     def run(self):
         before = {s: signal.signal(s, self.stop) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
-            with subprocess.Popen(self.line, env=self.env, stdin=subprocess.DEVNULL, start_new_session=True,
-                                  preexec_fn=end_with_parent) as self.process:
+            with subprocess.Popen(self.line, env=self.env, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                  start_new_session=True, preexec_fn=end_with_parent) as self.process:
+                ear = threading.Thread(target=self.listen, args=(self.process.stderr,), daemon=True)
+                ear.start()
                 if self.stopped:  # before there was a job to be told
                     self.process.terminate()
-                return self.process.wait()
+                code = self.process.wait()
+                ear.join(timeout=5)
+                return code
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)

@@ -15,7 +15,7 @@ import sys
 import tomllib
 from dataclasses import dataclass
 
-from bplbm.project import CASES, TOOLS
+from bplbm.project import CASES, INSTALLED, TOOLS, tool
 from bplbm.scenes import scenes
 
 TEMPLATES = pathlib.Path(__file__).resolve().parent / "templates"
@@ -65,7 +65,7 @@ def rendered(text, name, dimensions, shows=""):
             line = line[3:]
         lines.append(line)
     what = "disc" if dimensions == 2 else "sphere"
-    text = "\n".join(lines).replace("NAME", name).replace("WHAT", what).replace("TUTORIAL", str(CASES / "TUTORIAL.md"))
+    text = "\n".join(lines).replace("NAME", name).replace("WHAT", what).replace("TUTORIAL", str(CASES / "TUTORIAL.md")).replace("RUN ", tool("run") + " ")
     return text.replace("SHOWS", shows) + "\n"
 
 
@@ -90,7 +90,7 @@ def bed(size, diameters, height, random_numbers):
 
 def packing(grains, dimensions):
     """LIGGGHTS commands that create the grains, and nothing when a run goes on from a checkpoint."""
-    lines = [f"# {len(grains)} {'discs' if dimensions == 2 else 'spheres'}; made by tools/new. tools/make_packing makes dense "
+    lines = [f"# {len(grains)} {'discs' if dimensions == 2 else 'spheres'}; made by {tool('new')}. {tool('make_packing')} makes dense "
              "ones in two dimensions."]
     density = "${disc_density}" if dimensions == 2 else "${density_max}"
     for i, (place, diameter) in enumerate(grains, 1):
@@ -127,8 +127,13 @@ def make(path, kind_name, dimensions):
     return folder
 
 
+def run_command():
+    """What starts a run: of a checkout with its whole path, since the scene may lie anywhere."""
+    return tool("run") if INSTALLED else TOOLS / "run"
+
+
 def main():
-    p = argparse.ArgumentParser(prog="tools/new", description=__doc__.splitlines()[0])
+    p = argparse.ArgumentParser(prog=tool("new"), description=__doc__.splitlines()[0])
     p.add_argument("name", nargs="?", metavar="NAME", help="folder to make, as sand or studies/sand")
     p.add_argument("--kind", choices=[*KINDS], default="free", help="; ".join(f"{k}: {v.shows}" for k, v in KINDS.items()))
     p.add_argument("--dimensions", type=int, choices=(2, 3), default=2, help="discs in two, spheres in three; default 2")
@@ -138,7 +143,7 @@ def main():
         print("\n".join(f"{name:8} {kind.shows}" for name, kind in KINDS.items()))
         return 0
     if not args.name:
-        p.error("which name? as tools/new sand")
+        p.error(f"which name? as {tool('new')} sand")
     try:
         folder = make(pathlib.Path(args.name), args.kind, args.dimensions)
     except Refused as refusal:
@@ -148,7 +153,7 @@ def main():
         print(f"new | error | {error.filename}: {error.strerror}; choose another place", file=sys.stderr)
         return 2
     print(f"new | {folder}: {KINDS[args.kind].shows}, {args.dimensions}D")
-    print(f"new | next: edit {folder / 'scene.toml'}, then {TOOLS / 'run'} {folder}")
+    print(f"new | next: edit {folder / 'scene.toml'}, then {run_command()} {folder}")
     return 0
 
 

@@ -3,13 +3,16 @@
 import argparse
 import math
 import pathlib
+import shlex
+import shutil
 import sys
 
-from bplbm.project import ROOT
+from bplbm.project import home, tool
 from bplbm.scenes import Unknown, find, scenes
 
 BAD_INPUT = 2
 MOST_THREADS = 1024
+ENGINES = ("liggghts", "lammps", "yade", "reference", "python", "c", "fortran")
 
 
 def fail(text, code=BAD_INPUT):
@@ -44,11 +47,11 @@ def seconds(text):
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        fail(f"{message}; see tools/run --help")
+        fail(f"{message}; see {tool('run')} --help")
 
 
 def parser():
-    p = Parser(prog="tools/run", description="Runs a scene and draws its pictures.", allow_abbrev=False)
+    p = Parser(prog=tool("run"), description="Runs a scene and draws its pictures.", allow_abbrev=False)
     p.add_argument("scene", nargs="?", help="name of a folder in cases/, or the path of a scene's folder or scene.toml")
     p.add_argument("--list", action="store_true", help="scenes with their sets and variants")
     p.add_argument("--set", default="resolved", help="parameter set: resolved, literal, fine")
@@ -58,8 +61,10 @@ def parser():
     p.add_argument("--fluid-ranks", type=whole, default=1, metavar="N")
     p.add_argument("--solid-ranks", type=whole, default=1, metavar="M")
     p.add_argument("--threads", type=whole, default=1, metavar="T", help=f"of the fluid; at most {MOST_THREADS}")
-    p.add_argument("--engine", default="liggghts", choices=["liggghts", "lammps", "reference", "python"],
-                   help="who moves the particles; the last two suit free discs")
+    p.add_argument("--engine", choices=ENGINES, help="who moves the particles (default: liggghts); yade suits particles of one "
+                   "size without a script, reference, python, c and fortran free discs")
+    p.add_argument("--engine-command", metavar="'COMMAND'", help="any other program that does; in its words {folder} is the "
+                   "scene's folder and {out} the output folder")
     p.add_argument("--until", type=seconds, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
     p.add_argument("--restart", action="store_const", const="checkpoint", help="go on from the checkpoint in --out")
@@ -85,7 +90,7 @@ def arguments(words):
     args, rest = options.parse_known_args(words)
     args.words = list(words)
     if not args.scene and rest:
-        fail(f"no option '{rest[0]}' without a scene; see tools/run --help")
+        fail(f"no option '{rest[0]}' without a scene; see {tool('run')} --help")
     if not args.scene:
         return args
     try:
@@ -105,6 +110,7 @@ def arguments(words):
     for overlay in args.overlay:
         if not pathlib.Path(overlay).is_file():
             fail(f"--overlay {overlay}: there is no such file")
+    check_engine(args)
     if scene.is_solid_alone:
         check_alone(args)
     refuse_clashes(scene, options)
@@ -112,10 +118,24 @@ def arguments(words):
     return args
 
 
+def check_engine(args):
+    """--engine or --engine-command, whose words replace it; the default where neither is given."""
+    if args.engine_command is not None:
+        if args.engine:
+            fail("--engine names one of our engines and --engine-command is any other program; give one of them")
+        try:
+            args.engine_command = shlex.split(args.engine_command)
+        except ValueError as error:
+            fail(f"--engine-command: {error}; quote it as a whole, e.g. 'python3 my_engine.py'")
+        if not args.engine_command or shutil.which(args.engine_command[0]) is None:
+            fail(f"--engine-command: there is no program '{(args.engine_command or [''])[0]}'")
+    args.engine = args.engine or "liggghts"
+
+
 def check_alone(args):
     """LIGGGHTS alone takes no option of the fluid or of the exchange."""
     given = {"--fluid-ranks": args.fluid_ranks > 1, "--threads": args.threads > 1, "--record": args.record,
-             "--restart": args.restart, "--engine": args.engine != "liggghts"}
+             "--restart": args.restart, "--engine": args.engine != "liggghts", "--engine-command": args.engine_command}
     for option, wrong in given.items():
         if wrong:
             fail(f"{args.scene.name} has no fluid, LIGGGHTS runs alone: leave {option} out")
@@ -125,7 +145,7 @@ def refuse_clashes(scene, options):
     """An overlay KEY-VALUE.toml whose KEY is an option of ours could never be chosen."""
     for key, values in scene.options().items():
         if f"--{key}" in options._option_string_actions:  # argparse has no other way to ask
-            fail(f"{scene.folder / f'{key}-{values[0]}.toml'}: --{key} is an option of tools/run, so this overlay cannot be "
+            fail(f"{scene.folder / f'{key}-{values[0]}.toml'}: --{key} is an option of {tool('run')}, so this overlay cannot be "
                  f"chosen; rename it, e.g. to my_{key}-{values[0]}.toml for --my_{key} {values[0]}")
 
 
@@ -135,7 +155,7 @@ def own_choices(scene, words):
     while rest:
         key, value = rest.pop(0), rest.pop(0) if rest else ""
         if not key.startswith("--") or key[2:] not in known:
-            fail(f"{scene.name} knows no '{key}'; see tools/run --help"
+            fail(f"{scene.name} knows no '{key}'; see {tool('run')} --help"
                  + "".join(f", and --{k} {'|'.join(v)}|all" for k, v in known.items()))
         if value != "all" and value not in known[key[2:]]:
             fail(f"{key} of {scene.name} is one of: {', '.join(known[key[2:]])}, all")
@@ -150,9 +170,9 @@ def label(args):
 
 
 def out_folder(args):
-    """out/SCENE… of the project for a scene of cases/, of the current folder for one elsewhere."""
+    """out/SCENE… of the checkout for a scene of cases/, else of the current folder."""
     parts = [args.scene.name] + ([args.set] if args.set != "resolved" else []) + ([label(args)] if label(args) else [])
-    return (ROOT if args.scene.shipped else pathlib.Path.cwd()) / "out" / "-".join(parts)
+    return (home() if args.scene.shipped else pathlib.Path.cwd()) / "out" / "-".join(parts)
 
 
 def scene_files(args):

@@ -12,7 +12,8 @@ import socket
 
 MARK, LOCK = ".bplbm", ".bplbm.lock"
 RESULTS = ("summary.json", "checkpoint.h5", "checkpoint.before.h5", "fault.h5", "probes.csv", "points.csv", "obstacles.csv", "fields.h5")
-OTHERS = ("fields.xdmf", "lbm.log", "liggghts.log", "lammps.log", "breaks.csv", "plot.log")
+OTHERS = ("fields.xdmf", "lbm.log", "liggghts.log", "lammps.log", "breaks.csv", "plot.log", "view.py",
+          "averages.h5", "averages.xdmf")
 
 
 class Refused(Exception):

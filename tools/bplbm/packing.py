@@ -18,7 +18,7 @@ import tempfile
 import numpy as np
 
 from bplbm.mpi_job import environment
-from bplbm.project import BIN
+from bplbm.project import BIN, tool
 
 DENSITY, STEP_PART = 1000.0, 0.1
 ROUNDS, STEPS = 60, 2000
@@ -31,7 +31,7 @@ def fail(text):
 
 
 def arguments():
-    p = argparse.ArgumentParser(prog="tools/make_packing", description=__doc__,
+    p = argparse.ArgumentParser(prog=tool("make_packing"), description=__doc__,
                                 formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--out", required=True, metavar="NAME", help="files NAME.liggghts and NAME.csv")
     p.add_argument("--box", required=True, nargs=4, type=float, metavar=("X_LO", "X_HI", "Y_LO", "Y_HI"),

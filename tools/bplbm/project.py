@@ -1,9 +1,31 @@
-"""Where this checkout lies, and its folders."""
+"""Where BPLBM lies: a checkout with its build, or an installed tree (PREFIX/bin, PREFIX/lib/bplbm, PREFIX/share/bplbm)."""
 
 import os
 import pathlib
+import re
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[2]  # of the checkout, or PREFIX/share/bplbm
+INSTALLED = not (ROOT / "CMakeLists.txt").exists()
 TOOLS = ROOT / "tools"
 CASES = ROOT / "cases"
-BIN = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
+BIN = ROOT.parents[1] / "lib" / "bplbm" / "bin" if INSTALLED else ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
+
+
+def home():
+    """The folder in which `out/` of the shipped scenes is made: an installed tree is never written to."""
+    return pathlib.Path.cwd() if INSTALLED else ROOT
+
+
+def tool(name):
+    """How a user calls a command: tools/run, or bplbm run."""
+    return f"bplbm {name}" if INSTALLED else f"tools/{name}"
+
+
+def missing_cpu_features():
+    """Instructions that the installed programs were compiled for and this machine lacks; sorted names."""
+    try:
+        needed = set((BIN.parent / "cpu_features").read_text().split())
+        flags = re.search(r"^flags\s*:(.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
+    except OSError:
+        return []
+    return sorted(needed - set(flags.group(1).split())) if flags else []

@@ -15,9 +15,10 @@ import sys
 import time
 
 from bplbm import output_folder, solid_alone
+from bplbm.logs import warning_lines
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
-from bplbm.project import BIN, TOOLS
+from bplbm.project import BIN, INSTALLED, TOOLS, missing_cpu_features, tool
 
 OUT_OF_TOLERANCE = 4
 FAULT = 1
@@ -42,10 +43,13 @@ def solid_command(args, out):
     """The program that moves the particles; nothing for a fluid alone."""
     if not args.scene.is_coupled:
         return []
-    if args.engine == "reference":
-        return [str(BIN / "reference_engine")]
-    if args.engine == "python":
-        return ["/usr/bin/python3", str(TOOLS / "engines" / "python" / "engine.py")]
+    if args.engine_command:
+        places = {"{folder}": str(args.scene.folder), "{out}": str(out)}
+        return [re.sub(r"\{folder\}|\{out\}", lambda found: places[found[0]], word) for word in args.engine_command]
+    if args.engine in ("reference", "c", "fortran"):
+        return [str(BIN / f"{args.engine}_engine")]
+    if args.engine in ("python", "yade"):
+        return ["/usr/bin/python3", str(TOOLS / "engines" / args.engine / "engine.py")]
     script = args.scene.script(args.engine)
     if not script.exists():
         fail(f"{args.scene.name} has no {script.name}; write one, or leave --engine out")
@@ -79,9 +83,12 @@ def run_alone(args, out):
     if args.force:
         output_folder.remove_run(out)
     script, begin = args.scene.script("liggghts"), time.monotonic()
-    code = start(solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks)
+    code = start(solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks, out)
     if code == 0:
         solid_alone.write_summary(out, args.scene.name, args.set, label(args), found, time.monotonic() - begin)
+        add_warnings(out)
+        for _, line in warning_lines(out):
+            print(f"run | warning | liggghts: {line}", file=sys.stderr)
     elif said := solid_alone.error_in(out / "liggghts.log"):
         print(f"run | error | liggghts: {said}", file=sys.stderr)
     return code
@@ -91,19 +98,25 @@ def run_job(args, out):
     """The job in a folder of ours. Returns its exit code."""
     if args.scene.is_solid_alone:
         return run_alone(args, out)
-    code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks)
+    code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks, out)
     if code == 0:
         add_solid_waiting(out)
+        add_warnings(out)
     return code
 
 
-def start(line, processes):
-    """Runs an mpirun line to its end. Returns its exit code."""
+def start(line, processes, out):
+    """Runs an mpirun line to its end; where it fails, error.log in the output folder is what it said. Returns its exit code."""
     env = environment(processes)
     added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)
     print(f"run | {added + ' ' if added else ''}{shlex.join(line)}", flush=True)
     job = MpiJob(line, env)
     code = job.run()
+    log = out / "error.log"
+    if code and out.is_dir():
+        log.write_text("".join(job.said))
+    else:
+        log.unlink(missing_ok=True)
     if job.stopped:
         print("run | stopped: the job was told to end", file=sys.stderr)
         return STOPPED
@@ -125,6 +138,14 @@ def add_solid_waiting(out):
           f"the fluid, of {summary['wall_seconds']:.3g} s")
 
 
+def add_warnings(out):
+    """Adds to summary.json what the logs warn of."""
+    path = out / "summary.json"
+    summary = json.loads(path.read_text())
+    summary["warnings"] = [f"{log}: {line}" for log, line in warning_lines(out)]
+    path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
+
+
 def draw(scene, out, until):
     script = scene.folder / "plot.py"
     if not script.exists():
@@ -143,11 +164,16 @@ def draw(scene, out, until):
          f"(its whole message is in {out / 'plot.log'}; the run's numbers are complete)", FAULT)
 
 
-def make_page(args, out):
-    """index.html of the run; without one says why, for the run is complete all the same."""
+def make_page(args, out, failed=0):
+    """index.html of the run, or of one that failed with an exit code; without one says why, for the run is what it is."""
     try:
+        about = out, args.scene, scene_files(args), args.words, command(args, out)
+        if failed:
+            from bplbm.page.failed import write_failed_page
+            print(f"run | page {write_failed_page(*about, failed)}", file=sys.stderr)
+            return
         from bplbm.page.run import write_page
-        print(f"run | page {write_page(out, args.scene, scene_files(args), args.words, command(args, out))}")
+        print(f"run | page {write_page(*about)}")
     except Exception as error:  # noqa: BLE001
         print(f"run | warning | no page was made: {type(error).__name__}: {error}; the run's numbers are complete",
               file=sys.stderr)
@@ -205,21 +231,32 @@ def study(args, runs, out):
     return 0
 
 
+def check_programs(args):
+    """Refuses a run whose programs are not there, or were compiled for another processor."""
+    if missing := missing_cpu_features():
+        fail(f"these programs were compiled for a processor with {', '.join(missing)}, which this machine lacks; "
+             "install a package for this processor, or build from the sources")
+    if (args.no_build or INSTALLED) and not (BIN / "lbm").exists():
+        what = "install the package again" if INSTALLED else "leave --no-build out, or run tools/build"
+        fail(f"{BIN / 'lbm'} is missing: {what}")
+    if args.engine in ("lammps", "reference") and INSTALLED and not (BIN / f"{args.engine}_engine").exists():
+        fail(f"--engine {args.engine} is not part of the package; build BPLBM from its sources for it")
+    if shutil.which("mpirun") is None:
+        fail(f"mpirun not found; {'install openmpi-bin' if INSTALLED else 'run tools/install'}")
+
+
 def main():
     args = arguments(sys.argv[1:])
     if args.list:
         list_scenes()
         return 0
     if not args.scene:
-        fail("which scene? tools/run --list shows them")
+        fail(f"which scene? {tool('run')} --list shows them")
     out = output_folder.resolved(args.out or out_folder(args))
     if args.look:
         take_folder(args, out, look=True)
         return 0
-    if args.no_build and not (BIN / "lbm").exists():
-        fail(f"{BIN / 'lbm'} is missing: leave --no-build out, or run tools/build")
-    if shutil.which("mpirun") is None:
-        fail("mpirun not found; run tools/install")
+    check_programs(args)
     others = comparison_runs(args)
     hold = take_folder(args, out)
     before = output_folder.files(out)
@@ -241,6 +278,8 @@ def go(args, others, out):
         if (out / "fault.h5").exists():
             print("run | states of the fault are kept (fault.*): --restart=fault goes on from them if both sides' are",
                   file=sys.stderr)
+        if code in (1, 3) and not args.no_page and not args.scene.is_solid_alone:
+            make_page(args, out, code)
         return code
     try:
         draw(args.scene, out, args.until is not None)

@@ -4,7 +4,7 @@ import pathlib
 import tomllib
 from dataclasses import dataclass
 
-from bplbm.project import CASES
+from bplbm.project import CASES, INSTALLED, tool
 
 
 class Unknown(Exception):
@@ -81,10 +81,14 @@ def scenes():
 
 
 def find(text):
-    """The scene of a name in cases/, or of the path of a folder or of its scene.toml. Throws Unknown."""
-    if text in scenes():
-        return Scene(CASES / text)
+    """The scene of a name in cases/, or of the path of a folder or of its scene.toml. Throws Unknown.
+
+    In a checkout a name of cases/ is that scene wherever one stands; of an installed tree, whose scenes are copied to be
+    changed, a folder here comes first.
+    """
     path = pathlib.Path(text)
+    if text in scenes() and not (INSTALLED and (path / "scene.toml").is_file()):
+        return Scene(CASES / text)
     if path.is_file():
         if path.name != "scene.toml":
             raise Unknown(f"{text}: is no scene.toml; give the folder of a scene, or its scene.toml "
@@ -93,9 +97,9 @@ def find(text):
     if (path / "scene.toml").is_file():
         return Scene(path.resolve())
     if path.is_dir():
-        raise Unknown(f"{text}: this folder holds no scene.toml; tools/new makes a new scene")
+        raise Unknown(f"{text}: this folder holds no scene.toml; {tool('new')} makes a new scene")
     if text.rstrip("/") in scenes():  # a shell has completed it in cases/
         return Scene(CASES / text.rstrip("/"))
     if "/" in text:
-        raise Unknown(f"no scene '{text}': there is no such folder; tools/new makes a new scene")
+        raise Unknown(f"no scene '{text}': there is no such folder; {tool('new')} makes a new scene")
     raise Unknown(f"no scene '{text}'; there are: {', '.join(scenes())}; or give the path of a scene's folder")

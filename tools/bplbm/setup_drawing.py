@@ -11,14 +11,18 @@ import re
 import sys
 
 from matplotlib.collections import PatchCollection
+from matplotlib.colors import LinearSegmentedColormap
 import matplotlib.pyplot as plt
 import numpy as np
 
 from bplbm import pictures  # noqa: F401  (its style)
+from bplbm import shapes
+from bplbm.project import INSTALLED, tool
 from bplbm.reading import read_table
 from bplbm.scene_words import COLOR, drive_text, side_line, words
 from bplbm.scenes import Unknown, find, scenes
 
+GREYS = LinearSegmentedColormap.from_list("solid", ["#eef4fb", "0.5"])  # from fluid to solid
 ATOM = re.compile(r"create_atoms\s+\d+\s+single\s+(\S+)\s+(\S+)")
 DIAMETER = re.compile(r"set\s+atom\s+(\d+)\s+diameter\s+(\S+)")
 
@@ -86,6 +90,11 @@ def figure_of(scene, folder):
             ring = o.get("hollow", False)
             axes.add_patch(plt.Circle(np.array(o["centre"]) / unit, o["diameter"] / 2 / unit, zorder=1 if ring else 2,
                                       facecolor="none" if ring else "0.6", edgecolor="0.3"))
+        elif "image" in o:
+            parts = shapes.solid_fraction(o, folder)
+            extent = np.array(shapes.image_extent(o, parts, scene["box"].get("origin", [0.0, 0.0]))) / unit
+            axes.imshow(np.where(parts > 0, parts, np.nan), origin="lower", extent=extent, cmap=GREYS, vmin=0, vmax=1,
+                        interpolation="nearest", zorder=1)
         else:
             low, high = np.array(o["from"]) / unit, np.array(o["to"]) / unit
             axes.add_patch(plt.Rectangle(low, *(high - low), facecolor="0.6", edgecolor="0.3"))
@@ -106,9 +115,10 @@ def figure_of(scene, folder):
 
 
 def draw(scene):
-    """Writes the picture of a Scene into its folder. Returns its path."""
+    """Writes the picture of a Scene into its folder, of an installed one into the current folder. Returns its path."""
     figure = figure_of(checked(scene.tables()), scene.folder)
-    path = scene.folder / "pictures" / "setup.png"
+    mine = not (INSTALLED and scene.shipped)
+    path = scene.folder / "pictures" / "setup.png" if mine else pathlib.Path.cwd() / f"{scene.name}-setup.png"
     path.parent.mkdir(exist_ok=True)
     figure.savefig(path, bbox_inches="tight")
     plt.close(figure)
@@ -116,7 +126,7 @@ def draw(scene):
 
 
 def main():
-    p = argparse.ArgumentParser(prog="tools/draw_setup", description=__doc__.splitlines()[0])
+    p = argparse.ArgumentParser(prog=tool("draw_setup"), description=__doc__.splitlines()[0])
     p.add_argument("scenes", nargs="*", metavar="SCENE", help="names of cases/, or paths of scenes")
     p.add_argument("--list", action="store_true", help="the scenes, and nothing else")
     args = p.parse_args()

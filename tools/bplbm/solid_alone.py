@@ -14,6 +14,11 @@ KEYS = {"box": {"size"}, "particles": {"diameter", "density", "contact_stiffness
         "run": {"time_step", "end_time"}}
 
 
+# What becomes a script variable: as lbm_solver/io/script_variables has it.
+OURS = {"scene_folder", "out_folder"}  # besides those of the scene: where the script includes files from, and writes
+ONE_WORD = re.compile(r"(?!/|(.*/)?\.\.(/|$)|-[^0-9.])[A-Za-z0-9_.,:/+*=-]+")
+
+
 class Mistake(ValueError):
     """What is wrong with the scene, and what to do."""
 
@@ -75,10 +80,12 @@ def variables(scene, until=None):
               "contact_stiffness": positive(particles["contact_stiffness"], "particles.contact_stiffness")}
     own = particles.get("variables", {})
     for name, value in own.items():
-        if name in found:
+        if name in found or name in OURS:
             raise Mistake(f"particles.variables.{name}: the scene gives this variable already; choose another name")
-        if not re.fullmatch(r"\w+", name) or not isinstance(value, (int, float, str)) or value == "":
-            raise Mistake(f"particles.variables.{name} = {value!r}: a script variable is a word with a number or a text")
+        if (not re.fullmatch(r"[A-Za-z0-9_]+", name) or not isinstance(value, (int, float, str))
+                or not ONE_WORD.fullmatch(str(value))):
+            raise Mistake(f"particles.variables.{name} = {value!r}: a script variable is a word of letters, digits and _, "
+                          "its value a number or one word of these and . , : / + - * =, no path out of the scene's folder")
     return {name: str(int(value) if isinstance(value, bool) else value) for name, value in (found | own).items()}
 
 

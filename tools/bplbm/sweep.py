@@ -14,7 +14,6 @@ import hashlib
 import json
 import os
 import pathlib
-import re
 import signal
 import subprocess
 import sys
@@ -22,8 +21,9 @@ import threading
 import time
 
 from bplbm import output_folder
+from bplbm.mpi_job import reason_of
 from bplbm.options import arguments, label, out_folder, scene_files, whole
-from bplbm.project import TOOLS
+from bplbm.project import TOOLS, tool
 from bplbm.scenes import scenes
 from bplbm.sweep_values import Mistake, Sweep, axis, path_of
 from bplbm.toml_text import read_laid_over, toml
@@ -31,7 +31,7 @@ from bplbm.toml_text import read_laid_over, toml
 OUT_OF_TOLERANCE = 4
 WAYS = {0: "ok", 1: "fault", 2: "refused", 3: "numerics", OUT_OF_TOLERANCE: "out of tolerance"}
 ANSWERED = (0, OUT_OF_TOLERANCE)  # runs that came to their end
-HELP_ON_MORE = "Other options are those of tools/run, as --variant, --until or --threads, and reach every run."
+HELP_ON_MORE = f"Other options are those of {tool('run')}, as --variant, --until or --threads, and reach every run."
 
 
 def fail(text):
@@ -41,18 +41,18 @@ def fail(text):
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        fail(f"{message}; see tools/sweep --help")
+        fail(f"{message}; see {tool('sweep')} --help")
 
 
 def parser():
-    p = Parser(prog="tools/sweep", description=__doc__, epilog=HELP_ON_MORE, allow_abbrev=False,
+    p = Parser(prog=tool("sweep"), description=__doc__.replace("tools/sweep", tool("sweep")), epilog=HELP_ON_MORE, allow_abbrev=False,
                formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("scene", nargs="?", help="name of a folder in cases/, or the path of a scene's folder or scene.toml")
     p.add_argument("--set", action="append", default=[], metavar="KEY=VALUES",
                    help="values between commas, or 1..5; repeatable")
     p.add_argument("--let", action="append", default=[], metavar="KEY=EXPRESSION",
                    help="a key that follows from others; repeatable, later ones may use earlier ones")
-    p.add_argument("--parameter-set", default="resolved", metavar="NAME", help="what tools/run calls --set: resolved, literal, fine")
+    p.add_argument("--parameter-set", default="resolved", metavar="NAME", help=f"what {tool('run')} calls --set: resolved, literal, fine")
     p.add_argument("--jobs", type=whole, default=1, metavar="N", help="runs at the same time")
     p.add_argument("--out", metavar="DIR", help="a new folder or that of an earlier sweep; default: out/SCENE-sweep")
     p.add_argument("--retry", action="store_true", help="run again what has failed")
@@ -96,16 +96,8 @@ def made_of(args, overlay):
     for path in sorted({*map(pathlib.Path, scene_files(args)), *folder.glob("*.liggghts"), *folder.glob("in.*"),
                         *folder.glob("plot.py")}):
         digest.update(path.read_bytes())
-    digest.update(repr((args.engine, args.until)).encode())
+    digest.update(repr((args.engine_command or args.engine, args.until)).encode())
     return digest.hexdigest()[:16]
-
-
-def reason_of(log):
-    """The last error of a run, without the program's name; else its last line."""
-    errors = re.findall(r"^\w+ \| error \| (.*)$", log, re.M)
-    ours = [e for e in errors if not e.startswith("the fluid program stopped")]
-    lines = [line for line in log.splitlines() if line.strip()]
-    return (ours or errors or lines or ["nothing was said"])[-1][:400]
 
 
 def results_of(folder):
@@ -150,7 +142,7 @@ class Runner:
             return
         text = (folder / "logs" / f"{name}.log").read_text(errors="replace")
         row = {"values": chosen, "made_of": hashed, "code": code, "seconds": round(time.monotonic() - start, 2),
-               "reason": "" if code in ANSWERED else reason_of(text),
+               "reason": "" if code in ANSWERED else reason_of(text)[:400],
                "results": results_of(folder / name) if code in ANSWERED else {}}
         self.table.add(name, row)
         reason = f" | {row['reason']}" if row["reason"] else ""
@@ -214,11 +206,11 @@ def main():
     options, rest = parser().parse_known_args()
     if not options.scene:
         if rest:
-            fail(f"no option '{rest[0]}' without a scene; see tools/sweep --help")
+            fail(f"no option '{rest[0]}' without a scene; see {tool('sweep')} --help")
         if options.list:
             print("\n".join(scenes()))
             return 0
-        fail("which scene? as tools/sweep settling_disc --set particles.density=1100,1250")
+        fail(f"which scene? as {tool('sweep')} settling_disc --set particles.density=1100,1250")
     words = [options.scene, *rest, "--set", options.parameter_set]
     args = checked(arguments(words))
     try:

@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <random>
+
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/solver/plan.h"
+#include "tests/support/script_words.h"
 #include "tests/unit/lbm_solver/scene_files.h"
 
 namespace {
@@ -99,6 +102,42 @@ TEST_F(SceneFiles, AVariableIsAWordAndAValue) {
   expect_in(with("\"two words\" = 1"), "is no name that a script can use");
   expect_in(with("evil = \"-in\""), "begins with '-', as an option of LIGGGHTS does");
   expect_in(with("empty = \"\""), "is empty");
+}
+
+// The words of a script stay what they were, whatever a scene says: quotes, commands, paths.
+TEST(ScriptWords, OfASceneAreOneWordEach) {
+  std::mt19937 random(1);
+  const std::string alphabet = "ab1._-/:,+*= \t\n\r\"'`$(){}&#;|<>\\%@!?~^[]\x01\x7f\xc3\xa4shell";
+  const auto text = [&] {
+    std::string t;
+    for (auto n = random() % 9; n > 0; --n) t += alphabet[random() % alphabet.size()];
+    return t;
+  };
+  int accepted = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const std::string t = text();
+    if (why_no_script_path(t).empty() && !t.empty()) {
+      EXPECT_TRUE(test::is_whole_between_quotes(t)) << t;
+    }
+    if (!why_no_variable("v", t).empty()) continue;
+    ++accepted;
+    ASSERT_TRUE(test::is_one_word_in_scripts(t)) << t;
+    EXPECT_FALSE(t.starts_with("/") || ("/" + t + "/").find("/../") != std::string::npos) << t;
+    EXPECT_TRUE(why_no_script_path(t).empty()) << t;
+  }
+  EXPECT_GT(accepted, 1000) << "the words are seen, not only refusals";
+}
+
+TEST_F(SceneFiles, NoWordOfASceneReachesAShell) {
+  const auto with = [&](const std::string& value) {
+    return refusal({folder_.write("scene.toml", with_variable("evil = " + value))});
+  };
+  for (const char* value :
+       {"'1\" == 1\" then \"shell touch x'", "'$(id)'", "'`id`'", "\"1\\nshell id\"", "'a b'",
+        "'a#'", "'a &'", "'${scene_folder}'", "\"it's\"", "\"\\u0007\""})
+    expect_in(with(value), "which a script could read as more than one word");
+  for (const char* value : {"'/tmp/evil'", "'../evil'", "'a/../../evil'", "'..'"})
+    expect_in(with(value), "leads out of the scene's folder");
 }
 
 TEST(Step, OfARunThatGoesOnDoesNotDependOnItsEnd) {

@@ -33,6 +33,16 @@ TEST(ScreenEar, NeedsNoScreen) {
   EXPECT_EQ(ear.last_error(), "ERROR: alone");
 }
 
+TEST(ScreenEar, TellsOfEachWarning) {
+  dem::ScreenEar ear;
+  std::vector<std::string> told;
+  ear.tell_warnings([&](const std::string& line) { told.push_back(line); });
+  std::FILE* stream = ear.listen(nullptr);
+  std::fputs("WARNING: one (a.cpp:1)\n no WARNING\nWARNING: two\nWARNING: not ended", stream);
+  std::fclose(stream);
+  EXPECT_EQ(told, (std::vector<std::string>{"WARNING: one (a.cpp:1)", "WARNING: two"}));
+}
+
 TEST(ScreenEar, AnErrorIsToldWithoutItsSource) {
   EXPECT_EQ(dem::without_source("ERROR: Invalid pair style (/build/liggghts-1/src/force.cpp:246)"),
             "ERROR: Invalid pair style");

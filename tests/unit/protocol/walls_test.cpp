@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/walls.h"
+#include "protocol/wire/walls.h"
 
 #include <gtest/gtest.h>
 
@@ -50,6 +50,19 @@ TEST(Walls, ThatAreNoSidesAreNamed) {
   expect_one(scene.found(), "3 obstacles: there for the fluid only");
   scene.solid.bodies = {"fix pipe wall/gran (cylinder)"};
   EXPECT_EQ(scene.found().size(), 1U);  // may be the same place: only that of the solid is named
+}
+
+TEST(Walls, ThatAreOneMeshAreNotNamed) {
+  const std::string screen = mesh_text({0.0, 0.0, 0.1}, {0.3, 0.2, 0.15});
+  Scene scene;
+  scene.fluid.bodies = {"obstacle: " + screen};
+  scene.solid.bodies = {"fix screen mesh/surface (of fix walls wall/gran), " + screen};
+  EXPECT_TRUE(scene.found().empty());
+  const std::string other = mesh_text({0.0, 0.0, 0.2}, {0.3, 0.2, 0.25});
+  scene.solid.bodies = {"fix screen mesh/surface (of fix walls wall/gran), " + other};
+  expect_one(scene.found(), "fix screen mesh/surface (of fix walls wall/gran) is a wall for the");
+  scene.solid.bodies.clear();
+  expect_one(scene.found(), "obstacle: mesh from (0, 0, 0.1) to (0.3, 0.2, 0.15) m: there for the");
 }
 
 TEST(Walls, OfASideThatDoesNotSayAreNotGuessed) {

@@ -10,7 +10,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from bplbm.cracks import BondGraph, openings  # noqa: E402
+from bplbm.cracks import BondGraph, chain, openings  # noqa: E402
 from bplbm.pores import cavity, connected, pressure_at  # noqa: E402
 
 N = 5  # discs a row
@@ -70,6 +70,25 @@ class Crack(unittest.TestCase):
         found = openings({1: np.zeros(2), 2: np.array([3.0, 0.0]), 3: np.array([0.0, 1.0])}, {1: 1.0, 2: 1.0, 3: 1.0},
                          [(1, 2), (1, 3)])
         self.assertEqual(list(found), [1.0, 0.0])
+
+
+class Chain(unittest.TestCase):
+    """Breaks in space, at 0, 1, 2 and 4 m on a line."""
+
+    def chain(self, seeds, reach):
+        places = np.array([[x, 0.0, 0.0] for x in (0.0, 1.0, 2.0, 4.0)])
+        return list(chain(places, np.isin(range(4), seeds), reach))
+
+    def test_it_goes_on_as_far_as_the_reach(self):
+        self.assertEqual(self.chain([0], 1.5), [True, True, True, False])
+        self.assertEqual(self.chain([0], 2.5), [True] * 4)
+
+    def test_it_begins_at_a_seed_only(self):
+        self.assertEqual(self.chain([3], 1.5), [False, False, False, True])
+        self.assertEqual(self.chain([], 1.5), [False] * 4)
+
+    def test_no_breaks_are_no_crack(self):
+        self.assertEqual(len(chain(np.zeros((0, 3)), np.zeros(0, dtype=bool), 1.0)), 0)
 
 
 class Pores(unittest.TestCase):

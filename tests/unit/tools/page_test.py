@@ -20,6 +20,7 @@ import h5py  # noqa: E402
 import numpy as np  # noqa: E402
 from bplbm import result, run as launcher  # noqa: E402
 from bplbm.page import flow, histories, picture  # noqa: E402
+from bplbm.page.failed import write_failed_page  # noqa: E402
 from bplbm.page.run import write_page  # noqa: E402
 from bplbm.quantities import of_particles  # noqa: E402
 from bplbm.results import Run  # noqa: E402
@@ -173,6 +174,39 @@ class Page(Output):
         with contextlib.redirect_stderr(text), mock.patch.object(launcher, "command", lambda *_: []):
             launcher.make_page(args, self.out)
         self.assertRegex(text.getvalue(), r"run \| warning \| no page was made: .*; the run's numbers are complete\n")
+
+
+class Failed(Output):
+    def failed_page(self):
+        return write_failed_page(self.out, self.scene, [self.scene.file], ["sand"], ["mpirun", "lbm"], 3).read_text()
+
+    def test_says_why_and_shows_what_was_made(self):
+        for dimensions in (2, 3):
+            self.write(dimensions)
+            (self.out / "summary.json").unlink()
+            (self.out / "error.log").write_text("lbm | error | interval 7: the fluid moves at <9> m/s\nliggghts | error | the fluid "
+                                                "program stopped: numerics\n")
+            text = self.failed_page()
+            for part in ("exit code 3", "numerics", "after 0.1 s of flow", "<b>interval 7: the fluid moves at &lt;9&gt; m/s</b>",
+                         "Set-up", "Flow until then", "Histories until then", "force of the fluid in", "&lt;too fast&gt;", "tools/run sand"):
+                self.assertIn(part, text, dimensions)
+
+    def test_needs_nothing_but_the_scene(self):
+        self.write(2)
+        for path in self.out.iterdir():
+            path.unlink()
+        text = self.failed_page()
+        self.assertIn("nothing was said", text)
+        self.assertIn("after 0 s of flow", text)
+
+    def test_a_file_that_was_cut_off_costs_its_part_only(self):
+        self.write(2)
+        (self.out / "summary.json").unlink()
+        fields = self.out / "fields.h5"
+        fields.write_bytes(fields.read_bytes()[:3000])
+        text = self.failed_page()
+        self.assertNotIn("Flow until then", text)
+        self.assertIn("Histories until then", text)
 
 
 class Flow(Output):

@@ -10,11 +10,12 @@ import subprocess
 import time
 
 from bplbm.costs import solid_seconds
+from bplbm.logs import warning_lines
 from bplbm.page import flow, histories
 from bplbm.page.html import Cell, page, section, table
 from bplbm.page.picture import data_url
 from bplbm.page.setup import setup
-from bplbm.project import ROOT
+from bplbm.project import ROOT, tool
 from bplbm.quantities import default_quantities
 from bplbm.results import Run
 from bplbm.toml_text import read_laid_over, toml
@@ -79,12 +80,7 @@ def said(run):
 
 def warnings(run):
     """Lines of both logs that warn or advise, each once."""
-    lines = []
-    for log in sorted(run.folder.glob("*.log")):
-        for line in log.read_text(errors="replace").splitlines():
-            if re.search(r"\bwarning\b|^hint\b", line, re.I):
-                lines.append((log.name, re.sub(r"\s+", " ", line.strip())))
-    rows = [[name, line] for name, line in dict.fromkeys(lines)]
+    rows = [[name, line] for name, line in warning_lines(run.folder)]
     return table(["log", "line"], rows) if rows else '<p class="soft">None in either log.</p>'
 
 
@@ -123,7 +119,7 @@ def how(run, tables, scene, words, line):
     """How to run it again."""
     versions = ", ".join(f"{name} {version}" for name, version in run.summary["versions"].items())
     script = scene.script("liggghts")
-    return (f"<pre>tools/run {html.escape(shlex.join(words))}</pre>"
+    return (f"<pre>{tool('run')} {html.escape(shlex.join(words))}</pre>"
             f'<p class="soft">{html.escape(versions)} · commit {html.escape(commit())} · {html.escape(machine())}</p>',
             details("the command of the job", shlex.join(line)), details("scene.toml with its overlays", toml(tables)),
             details(script.name, script.read_text(errors="replace")) if script.is_file() else "")

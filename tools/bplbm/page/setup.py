@@ -1,13 +1,18 @@
 """The set-up of a scene as a drawing: box, sides, boundary conditions, obstacles, and particles where they begin."""
 
+import base64
 import html
+import io
 
+import matplotlib.image
 import numpy as np
 
+from bplbm import shapes
 from bplbm.reading import read_table
 from bplbm.scene_words import COLOR, drive_text, side_line, words
 
 MOST_DISCS = 4000
+MOST_TRIANGLES = 6000
 WIDTH, ROOM = 360, 46  # of the drawing; beside it for words
 
 
@@ -87,9 +92,36 @@ class Drawing:
             self.parts.append(f'<text transform="translate({x + dx:.1f} {y + dy:.1f}) rotate({turn})" class="middle" '
                               f'style="fill:{color}">{html.escape(words(b))}</text>')
 
-    def obstacles(self):
+    def image(self, o, folder):
+        """An image as it is, in three dimensions the most solid voxel along y."""
+        parts = shapes.solid_fraction(o, folder)
+        x0, x1, *_, z0, z1 = shapes.image_extent(o, parts, self.tables["box"].get("origin", [0.0] * dimensions(self.tables)))
+        seen = parts if parts.ndim == 2 else parts.max(axis=1)
+        pixels = np.zeros((*seen.shape, 4))
+        pixels[..., :3], pixels[..., 3] = 0.6, seen[::-1]
+        out = io.BytesIO()
+        matplotlib.image.imsave(out, pixels, format="png")
+        (left, top), (right, bottom) = self.place((x0, z1)), self.place((x1, z0))
+        self.parts.append(f'<image x="{left:.1f}" y="{top:.1f}" width="{right - left:.1f}" height="{bottom - top:.1f}" '
+                          'preserveAspectRatio="none" style="image-rendering:pixelated" '
+                          f'href="data:image/png;base64,{base64.b64encode(out.getvalue()).decode()}"/>')
+
+    def mesh(self, o, folder):
+        """The triangles of a mesh that face the reader, seen along y."""
+        corners = shapes.placed_mesh(o, folder)
+        a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+        facing = corners[a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2] < 0]
+        outline = "".join("M" + "L".join("{:.1f} {:.1f}".format(*self.place(corner)) for corner in t) + "Z"
+                          for t in facing[:MOST_TRIANGLES])
+        self.parts.append(f'<path d="{outline}" fill="#999" stroke="#555" stroke-width=".3" fill-opacity=".8"/>')
+
+    def obstacles(self, folder):
         for o in self.tables.get("obstacle", []):
-            if "diameter" in o:
+            if "image" in o:
+                self.image(o, folder)
+            elif "mesh" in o:
+                self.mesh(o, folder)
+            elif "diameter" in o:
                 x, y = self.place(o["centre"])
                 fill = "none" if o.get("hollow") else "#999"
                 self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{o["diameter"] / 2 * self.scale:.1f}" fill="{fill}" '
@@ -145,7 +177,7 @@ def grains(tables, folder):
 def setup(run, tables, folder):
     """HTML of the drawing and what drives the flow. folder: of the scene."""
     drawing = Drawing(tables)
-    drawing.obstacles()
+    drawing.obstacles(folder)
     drawing.discs(grains(tables, folder), "#999")
     drawing.discs(first_discs(run, tables))
     drawing.sides()

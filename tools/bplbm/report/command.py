@@ -24,7 +24,7 @@ import numpy as np
 
 from bplbm import pictures  # noqa: F401  (its style)
 from bplbm.page.report import report_page
-from bplbm.project import ROOT
+from bplbm.project import ROOT, tool
 from bplbm.report.arrays import arrays, draw_arrays, text_of_arrays, write_arrays
 from bplbm.report.cases import CASES_OF, FORMER, GROUPS, OURS, PAPERS, SCHEMES, STAIRS
 from bplbm.report.details import details
@@ -252,7 +252,7 @@ OTHERS = {"arrays": arrays_case,
 
 def main():
     names = [*CASES_OF, *OTHERS, *GROUPS]
-    p = argparse.ArgumentParser(prog="tools/report", description=__doc__.splitlines()[0])
+    p = argparse.ArgumentParser(prog=tool("report"), description=__doc__.splitlines()[0])
     p.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(names)}; default: all")
     p.add_argument("--quick", action="store_true", help="about ten minutes (default)")
     p.add_argument("--full", action="store_true", help="more cells, steps and cases; under ninety minutes")

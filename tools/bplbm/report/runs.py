@@ -7,10 +7,10 @@ import subprocess
 
 from bplbm.mpi_job import environment
 from bplbm.output_folder import mark
-from bplbm.project import BIN, CASES, ROOT
+from bplbm.project import BIN, CASES, home
 from bplbm.toml_text import toml
 
-OUT = ROOT / "out" / "report"
+OUT = home() / "out" / "report"
 ONE_MACHINE = {"OMPI_MCA_pml": "ob1"}  # no search for networks: 0.2 s less of each start
 
 

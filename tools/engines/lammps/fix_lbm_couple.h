@@ -8,18 +8,14 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "protocol/overlap.h"
-#include "protocol/session.h"
-#include "protocol/solid_parts.h"
+#include "protocol/solid/particle_coupling.h"
 
 namespace engine {
 
 /// The session that `main` made; LAMMPS offers no other way to hand it to a fix.
-struct Coupling {
+struct Coupling : protocol::Progress {
   protocol::SolidSession* session = nullptr;
-  bool agreed = false, over = false;
   static Coupling& instance();
 };
 
@@ -28,7 +24,7 @@ struct Coupling {
 /// every step. LAMMPS does not tell what its fix gravity does, so the script must, for the fluid to
 /// compare. Where the fluid asks for a checkpoint, LAMMPS is set up anew at that step, as a restart
 /// would, and writes its restart file; a command `restart` of the script is off from then on.
-class FixLbmCouple final : public LAMMPS_NS::Fix {
+class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
  public:
   FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg);
   ~FixLbmCouple() override;
@@ -37,7 +33,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   void init() override;
   void setup_pre_exchange() override;
   void setup(int vflag) override;
-  void post_force(int vflag) override;
+  void post_force(int) override { coupling_->add_loads(); }
   void end_of_step() override;
 
   void grow_arrays(int n) override;
@@ -47,27 +43,28 @@ class FixLbmCouple final : public LAMMPS_NS::Fix {
   int unpack_exchange(int i, double* buffer) override;
   int pack_restart(int i, double* buffer) override;
   void unpack_restart(int i, int nth) override;
-  int size_restart(int) override { return kColumns - kId + 1; }
-  int maxsize_restart() override { return kColumns - kId + 1; }
+  int size_restart(int) override { return kColumns - protocol::kHeldId + 1; }
+  int maxsize_restart() override { return kColumns - protocol::kHeldId + 1; }
 
  private:
-  /// Of a particle: force and torque; the id and epoch that the fluid was told last.
-  static constexpr int kId = 6, kEpoch = 7, kColumns = 8;
-  std::vector<protocol::Ball> balls(int group) const;
-  protocol::Hello hello() const;
-  void exchange(bool add_change, std::uint32_t flags = protocol::kContinue);
-  void settle_again();
-  void write_part();
+  static constexpr int kColumns = protocol::kHeldColumns;
 
-  int substeps_ = 0;
+  // what the coupling asks of LAMMPS
+  protocol::EngineParticles particles() override;
+  MPI_Comm communicator() const override { return world; }
+  std::int64_t step_number() const override;
+  protocol::Setting setting() const override;
+  int index_of(std::int64_t id) const override;
+  void set_up_again() override;
+  void write_part(protocol::SolidParts& parts, std::int64_t interval) override;
+
+  protocol::Hello hello() const;
+  [[noreturn]] void fail(const std::string& text) const;
+
+  std::optional<protocol::ParticleCoupling> coupling_;
   protocol::Vec3 gravity_{};  ///< [m/s²]
   double** held_ = nullptr;   ///< [nmax][kColumns] force [N], torque [N m] of this interval, …
-  int held_still_ = 0;        ///< groups whose forces fix freeze or setforce sets
-  LAMMPS_NS::bigint first_step_ = 0;
-  std::int64_t interval_ = 0;
-  bool stop_asked_ = false, settle_asked_ = false, checkpoint_asked_ = false;
-  bool settling_again_ = false;                ///< in settle_again
-  std::optional<protocol::SolidParts> parts_;  ///< once the two have agreed
+  int frozen_groups_ = 0;     ///< whose forces fix freeze or setforce sets
 };
 
 }  // namespace engine

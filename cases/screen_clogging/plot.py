@@ -1,0 +1,48 @@
+"""Results and pictures of screen_clogging. Usage: plot.py OUT_FOLDER (tools/run calls it)."""
+
+import sys
+
+import matplotlib.pyplot as plt
+import numpy as np
+from bplbm import Run, draw_slice, quantity, read_table, result, studies
+
+BELOW, ABOVE = 0.006, 0.008  # m, the screen's faces
+
+
+def passed(run):
+    """Grains that have gone through the slot, of all, and times [s] with how many had by then."""
+    table = read_table(run.folder / "probes.csv")
+    times = np.unique(table["time"])
+    first = table["time"] == times[0]
+    count = np.count_nonzero(first)
+    still_above = [np.count_nonzero(table["z"][table["time"] == t] > BELOW) for t in times]
+    return count, times, count - np.array(still_above)
+
+
+def main():
+    run = Run(sys.argv[1])
+    others = studies(run)
+    count, times, through = passed(run)
+    results = [result("grains through the wide slot", through[-1] / count, "1", 1.0,
+                      "a slot of three grains holds none but those that rest on the bars", 0.15)]
+    told = [quantity("grains", count, "1")]
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.6, 3.6), width_ratios=(1, 1.4))
+    image = draw_slice(left, run, min(run.frames(), key=lambda f: abs(f[0] - 0.1))[1], "y", length_unit=1e-3)
+    figure.colorbar(image, ax=left, label="speed [m/s]")
+    right.plot(times, through, label="slot of 3 grains")
+    if "variant-narrow" in others:
+        narrow = others["variant-narrow"]
+        held, held_times, held_through = passed(narrow)
+        results.append(result("grains through the narrow slot", held_through[-1] / held, "1", 0.0,
+                              "a slot of 0.8 grains", 0, scale=1.0))
+        told.append(quantity("flux with the slot clogged", narrow.flux(narrow.frames()[-1][1])[2], "m/s"))
+        right.plot(held_times, held_through, label="slot of 0.8 grains")
+    run.write_results(results, told)
+    right.set(xlabel="time [s]", ylabel="grains through the slot")
+    right.legend()
+    figure.tight_layout()
+    run.save(figure, "screen.png")
+
+
+if __name__ == "__main__":
+    main()

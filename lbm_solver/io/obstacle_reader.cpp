@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/io/obstacle_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "lbm_solver/io/image_file.h"
+#include "lbm_solver/io/stl_file.h"
+#include "protocol/program/checksum.h"
+#include "protocol/program/input_file.h"
+
+namespace lbm {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = 8'000'000'000;  // bytes
+constexpr double kOtherUnit = 100.0;  // sizes of the box: a mesh that is larger is of another unit
+
+/// The path of a file that a key names, and its checksum among the settings.
+std::string file_of(TableReader& t, const std::string& key, const std::string& scene_file) {
+  const std::string name = t.text_or(key, "");
+  const auto path = std::filesystem::path(scene_file).parent_path() / name;
+  if (const auto problem = protocol::why_unreadable(path, kLargestFile); !problem.empty())
+    t.fail(key, "= \"" + name + "\": " + problem, "put the file beside the scene");
+  t.note(key + "_content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
+  return path;
+}
+
+/// Calls a reader of files; what it finds wrong is told with the key's place.
+template <class Read>
+auto read_file(TableReader& t, const std::string& key, const std::string& path, Read&& read) try {
+  return read();
+} catch (const std::invalid_argument& error) {
+  const std::string text = error.what();
+  const auto end = text.rfind("; ");
+  t.fail(key,
+         fmt::format("= \"{}\" {}", std::filesystem::path(path).filename().string(),
+                     text.substr(0, end)),
+         text.substr(end + 2));
+}
+
+std::string place_text(const Vec3& x) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x.x(), x.y(), x.z());
+}
+
+/// Scales, turns about an axis through the file's origin, and moves.
+void place(TriangleMesh& mesh, double scale, const std::vector<double>& turn, const Vec3& move) {
+  Vec3 axis(turn[0], turn[1], turn[2]);
+  axis.normalize();
+  const double angle = turn[3] * std::numbers::pi / 180.0;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  for (Vec3& v : mesh.vertices) {
+    const Vec3 x = scale * v;
+    const Vec3 across(axis.y() * x.z() - axis.z() * x.y(), axis.z() * x.x() - axis.x() * x.z(),
+                      axis.x() * x.y() - axis.y() * x.x());
+    v = cosine * x + sine * across + (1.0 - cosine) * axis.dot(x) * axis + move;
+  }
+}
+
+/// Refuses a surface that is not closed or not turned one way.
+void check_surface(const TableReader& t, const TriangleMesh& mesh, bool may_be_open) {
+  const SurfaceDefects found = defects(mesh);
+  const auto fail = [&](std::size_t count, const std::string& what, const Vec3& at,
+                        const std::string& remedy) {
+    t.fail("mesh", fmt::format("{} {}, the first at {}", count, what, place_text(at)), remedy);
+  };
+  if (found.crowded > 0)
+    fail(found.crowded, "of its edges have more than two triangles", *found.at_crowded,
+         "part the bodies that touch there, or join them into one surface");
+  if (found.turned > 0)
+    fail(found.turned, "of its edges lie between triangles that face opposite ways",
+         *found.at_turned, "turn the flipped facets (a mesh tool calls it 'recalculate normals')");
+  if (found.open > 0 && !may_be_open)
+    fail(found.open, "of its edges are open: the surface has holes and encloses nothing",
+         *found.at_open, "close them, or give the surface a thickness [m]");
+}
+
+void check_size(const TableReader& t, const TriangleMesh& mesh, const BoxScene& box) {
+  const auto [low, high] = bounds(mesh);
+  const double size = (high - low).maxCoeff();
+  bool outside = false;
+  for (int k = 0; k < 3; ++k)
+    outside = outside || high[k] <= box.origin[k] || low[k] >= box.origin[k] + box.size[k];
+  const std::string where = fmt::format("reaches from {} to {}", place_text(low), place_text(high));
+  if (size > kOtherUnit * box.size.maxCoeff())
+    t.fail("mesh", fmt::format("{}, {:.3g} times the box", where, size / box.size.maxCoeff()),
+           "are its lengths in mm? then give scale = 0.001");
+  if (outside) t.fail("mesh", where + ", outside of the box", "give move = [x, y, z] in m");
+}
+
+MeshScene read_mesh(TableReader& t, const std::string& scene_file, const BoxScene& box) {
+  MeshScene mesh;
+  if (box.dimension == 2)
+    t.fail("mesh", "is there in three dimensions only",
+           "draw its section as an image, or take discs and blocks");
+  const double scale = t.number_or("scale", 1.0, Bounds::positive(), "m per unit of the file");
+  const std::vector<double> turn = t.numbers_or("rotate", {0.0, 0.0, 1.0, 0.0}, {}, "");
+  if (turn.size() != 4 || turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2] == 0.0)
+    t.fail("rotate", "is no axis and angle", "give [x, y, z of the axis, degrees]");
+  const Vec3 move = t.vector_or_zero("move", 3, "[m]");
+  mesh.hollow = t.flag_or("hollow", false);
+  mesh.thickness = t.optional_number("thickness", Bounds::positive(), "m").value_or(0.0);
+  mesh.file = file_of(t, "mesh", scene_file);
+  TriangleMesh surface = read_file(t, "mesh", mesh.file, [&] { return read_stl(mesh.file); });
+  place(surface, scale, turn, move);
+  check_size(t, surface, box);
+  check_surface(t, surface, mesh.thickness > 0.0);
+  if (mesh.thickness > 0.0 && mesh.hollow)
+    t.fail("hollow", "stands beside thickness", "give one of them");
+  if (mesh.thickness > 0.0) surface = thickened(surface, mesh.thickness);
+  mesh.volume = enclosed_volume(surface);
+  if (!(mesh.volume > 0.0))
+    t.fail("mesh", "has triangles that face inwards: it encloses less than nothing",
+           "turn all of them; if the fluid is inside of the surface, give hollow = true as well");
+  mesh.surface = std::make_shared<const TriangleMesh>(std::move(surface));
+  return mesh;
+}
+
+/// Three whole numbers, in two dimensions two; nothing where the key is absent.
+std::optional<Cell3> whole_numbers(TableReader& t, const std::string& key, int dimension,
+                                   int least) {
+  if (!t.has(key)) return std::nullopt;
+  const Vec3 numbers = t.vector(key, dimension, "voxels");
+  Cell3 cell{0, 0, dimension == 2 ? std::max(least, 0) : 0};
+  for (int k = 0; k < dimension; ++k) {
+    cell[k] = static_cast<int>(std::clamp(numbers[k], -1e9, 1e9));
+    if (cell[k] != numbers[k] || cell[k] < least)
+      t.fail(key, fmt::format("holds {}", numbers[k]),
+             fmt::format("give whole numbers of at least {}", least));
+  }
+  return cell;
+}
+
+/// The part [from, to) of an image; of one slice in two dimensions.
+GreyImage cut_out(TableReader& t, GreyImage image, Cell3 from, Cell3 to) {
+  if (image.size[2] == 1) to[2] = 1;
+  GreyImage part;
+  for (int k = 0; k < 3; ++k) {
+    part.size[k] = to[k] - from[k];
+    if (part.size[k] < 1 || to[k] > image.size[k])
+      t.fail("image",
+             fmt::format("has {} × {} × {} voxels: nothing lies between {} and {} in {}",
+                         image.size[0], image.size[1], image.size[2], from[k], to[k], "xyz"[k]),
+             "correct cut_from and cut_to, in voxels");
+  }
+  if (part.size == image.size) return image;
+  for (int z = from[2]; z < to[2]; ++z)
+    for (int y = from[1]; y < to[1]; ++y)
+      for (int x = from[0]; x < to[0]; ++x) part.levels.push_back(image.at(x, y, z));
+  return part;
+}
+
+/// How levels become solid fractions.
+std::function<float(float)> fraction_rule(TableReader& t) {
+  const auto threshold = t.optional_number("threshold", {}, "");
+  const bool above = t.choice_or("solid", "above", {"above", "below"}) == "above";
+  const std::vector<double> levels = t.numbers_or("grey_levels", {}, {}, "");
+  if (threshold.has_value() != levels.empty())
+    t.fail("threshold", threshold ? "stands beside grey_levels" : "is missing",
+           "give a threshold, or grey_levels = [of fluid, of solid]");
+  if (threshold) {
+    const double at = *threshold;
+    return [at, above](float v) { return (v >= at) == above ? 1.0F : 0.0F; };
+  }
+  if (levels.size() != 2 || levels[0] == levels[1])
+    t.fail("grey_levels", "is no pair of different levels", "give [of fluid, of solid]");
+  const double fluid = levels[0], slope = 1.0 / (levels[1] - levels[0]);
+  return [fluid, slope](float v) {
+    return static_cast<float>(std::clamp((v - fluid) * slope, 0.0, 1.0));
+  };
+}
+
+ImageScene read_image(TableReader& t, const std::string& scene_file, const BoxScene& box) {
+  ImageScene scene;
+  scene.voxel = t.number("voxel", Bounds::positive(), "m");
+  scene.at = t.has("at") ? t.vector("at", box.dimension, "[m], the lower corner") : box.origin;
+  const auto rule = fraction_rule(t);
+  ImageLayout layout;
+  layout.raw_size = whole_numbers(t, "raw_size", box.dimension, 1).value_or(Cell3{0, 0, 0});
+  layout.raw_type = t.text_or("raw_type", "");
+  layout.dataset = t.text_or("dataset", "");
+  const auto from = whole_numbers(t, "cut_from", box.dimension, 0);
+  const auto to = whole_numbers(t, "cut_to", box.dimension, 0);
+  const std::string path = file_of(t, "image", scene_file);
+  scene.file = path;
+  GreyImage image = read_file(t, "image", path, [&] { return read_image(path, layout); });
+  if (box.dimension == 2 && image.size[2] > 1)
+    t.fail("image", fmt::format("has {} slices, the box two dimensions", image.size[2]),
+           "give one slice, or a box in three dimensions");
+  image = cut_out(t, std::move(image), from.value_or(Cell3{0, 0, 0}), to.value_or(image.size));
+  for (float& level : image.levels) level = rule(level);
+  scene.voxels = std::make_shared<const Voxels>(Voxels{image.size, std::move(image.levels)});
+  return scene;
+}
+
+}  // namespace
+
+ObstacleScene read_obstacle(TableReader t, const std::string& scene_file, const BoxScene& box) {
+  ObstacleScene o;
+  const int d = box.dimension;
+  o.round = t.has("centre");
+  if (t.has("mesh")) {
+    o.round = false;
+    o.mesh = read_mesh(t, scene_file, box);
+  } else if (t.has("image")) {
+    o.round = false;
+    o.image = read_image(t, scene_file, box);
+  } else if (o.round) {
+    o.centre = t.vector("centre", d, "[m]");
+    o.diameter = t.number("diameter", Bounds::positive(), "m");
+    o.hollow = t.flag_or("hollow", false);
+    if (d == 3)
+      o.spin = t.vector_or_zero("spin", 3, "[rad/s]");
+    else
+      o.spin.z() = t.number_or("spin", 0.0, {}, "rad/s");
+  } else {
+    o.from =
+        t.vector("from", d, "[m], or centre and diameter of a disc or sphere, or a mesh or image");
+    o.to = t.vector("to", d, "[m]");
+  }
+  t.finish();
+  return o;
+}
+
+}  // namespace lbm

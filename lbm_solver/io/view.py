@@ -1,0 +1,202 @@
+"""Shows this run in ParaView: the fluid's speed, grains with their radius, intact bonds; broken bonds are hidden.
+
+    pvpython view.py                           writes view.png beside this file
+    pvpython view.py --time 0.5 --out a.png    (or pvbatch)
+    paraview --script=view.py                  the same scene, ready, in the program
+
+Without a screen it draws on one that xvfb-run (Debian: xvfb, xauth) makes. In three dimensions the fluid is cut at the middle of the box, and grains in front of the cut are left out.
+"""
+
+import argparse
+import os
+import shutil
+import sys
+
+import paraview
+from paraview import simple as pv
+
+PIXELS = 1100  # of the longer side
+GREEN, RED, GREY, DARK = [0.18, 0.56, 0.31], [0.84, 0.15, 0.16], [0.78, 0.76, 0.72], [0.2, 0.2, 0.2]
+MOST_CELLS = 50_000_000  # that are read, all frames together, to find the largest speed
+
+
+def folder():
+    here = globals().get("__file__") or "view.py"
+    return os.path.dirname(os.path.abspath(here))
+
+
+def arguments():
+    p = argparse.ArgumentParser(prog="view.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--time", type=float, help="of the frame [s]; default: the last one")
+    p.add_argument("--out", default=os.path.join(folder(), "view.png"), help="picture to write")
+    p.add_argument("--broken", action="store_true", help="show broken bonds too, where they broke")
+    p.add_argument("--field", default="velocity", choices=["velocity", "pressure"])
+    return p.parse_args([] if paraview.fromGUI else sys.argv[1:])
+
+
+def need_screen():
+    """Debian's ParaView dies without a screen: begins anew with one that is made for it, or says what is missing."""
+    if paraview.fromGUI or os.environ.get("DISPLAY") or sys.platform != "linux":
+        return
+    if shutil.which("xvfb-run") is None:
+        sys.exit("view | error | there is no screen (DISPLAY) to draw on; install xvfb and xauth, or log in with one")
+    program = os.path.basename(os.readlink("/proc/self/exe")).partition("-")[0]
+    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1600x1400x24", program, os.path.join(folder(), "view.py"),
+                           *sys.argv[1:]])
+
+
+def block(name):
+    """A reader of one block of fields.xdmf; None where the run has no such block."""
+    path = os.path.join(folder(), "fields.xdmf")
+    with open(path) as text:
+        if f'<Grid Name="{name}" GridType="Collection"' not in text.read():
+            return None
+    reader = pv.XDMFReader(registrationName=name, FileNames=[path])
+    reader.UpdatePipelineInformation()
+    reader.GridStatus = [grid for grid in reader.GridStatus.Available if grid.partition("[")[0] == name]  # a grid each frame
+    reader.UpdatePipeline()
+    return reader
+
+
+def named(proxy, name):
+    pv.RenameSource(name, proxy)
+    return proxy
+
+
+def fluid_shown(fluid, flat, bounds):
+    """The fluid without what solids cover, in three dimensions at the middle of the box."""
+    shown = fluid
+    if not flat:
+        shown = named(pv.Slice(Input=fluid, SliceType="Plane"), "cut")
+        shown.SliceType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
+        shown.SliceType.Normal = [0, 1, 0]
+    if fluid.CellData.GetArray("solid_fraction"):
+        shown = named(pv.Threshold(Input=shown, Scalars=["CELLS", "solid_fraction"], ThresholdMethod="Below Lower Threshold",
+                                   LowerThreshold=0.5), "fluid without solids")
+    return shown
+
+
+def highest(fluid, field, times):
+    """Largest absolute value of a field over all frames; over the present one where they are many."""
+    cells = fluid.GetDataInformation().GetNumberOfCells()
+    largest = 0.0
+    for time in times if cells * len(times) <= MOST_CELLS else []:
+        fluid.UpdatePipeline(time)
+        largest = max(largest, *map(abs, reach(fluid, field)))
+    return largest or max(map(abs, reach(fluid, field)))
+
+
+def reach(fluid, field):
+    array = fluid.CellData.GetArray(field)
+    low, high = array.GetRange(-1 if array.GetNumberOfComponents() > 1 else 0)
+    return (low, high) if low <= high else (0.0, 0.0)
+
+
+def colour(display, view, fluid, field, largest):
+    """Colours of the field, the same in all frames, with a bar that names the unit."""
+    vector = field == "velocity"
+    pv.ColorBy(display, ("CELLS", field, "Magnitude") if vector else ("CELLS", field))
+    table = pv.GetColorTransferFunction(field)
+    table.ApplyPreset("Inferno (matplotlib)" if vector else "Cool to Warm", True)
+    table.RescaleTransferFunction(0.0 if vector else -largest, largest or 1.0)
+    bar = pv.GetScalarBar(table, view)
+    bar.Title, bar.ComponentTitle = ("speed [m/s]", "") if vector else ("pressure [Pa]", "")
+    bar.TitleColor = bar.LabelColor = [0, 0, 0]
+    bar.TitleFontSize = bar.LabelFontSize = 14
+    bar.WindowLocation = "Upper Right Corner"
+    display.SetScalarBarVisibility(view, True)
+
+
+def behind(points, bounds):
+    """Grains, or ends of bonds, that the cut of the fluid leaves to be seen."""
+    cut = pv.Clip(Input=points, ClipType="Plane", Invert=0)
+    cut.ClipType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
+    cut.ClipType.Normal = [0, 1, 0]
+    return cut
+
+
+def glyphs(points, flat, part, name):
+    """A disc or sphere at each point. part: of its radius."""
+    glyph = pv.Glyph(Input=points, GlyphType="Cylinder" if flat else "Sphere", ScaleArray=["POINTS", "radius"],
+                     ScaleFactor=2.0 * part, OrientationArray=["POINTS", "No orientation array"], GlyphMode="All Points")
+    if flat:
+        glyph.GlyphType.Resolution, glyph.GlyphType.Height = 24, 1e-4
+        glyph.GlyphTransform.Rotate = [90.0, 0.0, 0.0]
+    return named(glyph, name)
+
+
+def plain(source, view, rgb, lift, width=None):
+    """Shows it in one colour; in two dimensions lifted a little before what lies behind."""
+    display = pv.Show(source, view)
+    display.ColorArrayName = [None, ""]  # pv.ColorBy fails where there is nothing to be seen
+    display.AmbientColor = display.DiffuseColor = rgb
+    display.Position = [0.0, 0.0, lift]
+    if lift:  # flat: no light
+        display.Ambient, display.Diffuse = 1.0, 0.0
+    if width:
+        display.LineWidth = width
+    return display
+
+
+def show_solids(view, flat, bounds, cell, broken):
+    grains = block("particles")
+    if grains:
+        shown = grains if flat else behind(grains, bounds)
+        if flat:
+            plain(glyphs(shown, flat, 1.0, "rims of grains"), view, DARK, 0.2 * cell)
+        plain(glyphs(shown, flat, 0.9 if flat else 1.0, "grains"), view, GREY, 0.3 * cell * flat)
+    for name, rgb, visible in (("bonds", GREEN, True), ("broken_bonds", RED, broken)):
+        bonds = block(name)
+        if bonds:
+            plain(bonds if flat else behind(bonds, bounds), view, rgb, 0.4 * cell * flat, 2.0).Visibility = int(visible)
+
+
+def look(view, flat, bounds):
+    """The camera: from above onto the plane, or at an angle from the front."""
+    size = [bounds[k + 1] - bounds[k] for k in (0, 2, 4)]
+    centre = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
+    away = [0.0, 0.0, 1.0] if flat else [-0.35, -1.0, 0.35]
+    across, up = (size[0], size[1]) if flat else (1.05 * size[0] + 0.4 * size[1], size[2] + 0.4 * size[1])
+    longest = max(across, up)
+    view.ViewSize = [int(PIXELS * max(0.45, across / longest)) + 140, int(PIXELS * max(0.45, up / longest))]
+    view.CameraFocalPoint = centre
+    view.CameraPosition = [c + 3.0 * sum(size) * a for c, a in zip(centre, away)]
+    view.CameraViewUp = [0, 1, 0] if flat else [0, 0, 1]
+    view.CameraParallelProjection = 1
+    wide = (across + 140 / PIXELS * longest) * view.ViewSize[1] / view.ViewSize[0]
+    view.CameraParallelScale = 0.53 * max(up, wide)
+
+
+def main():
+    args = arguments()
+    need_screen()
+    view = pv.GetActiveViewOrCreate("RenderView")
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    view.OrientationAxesVisibility = 0
+    fluid = block("fluid")
+    times = list(fluid.TimestepValues) or [0.0]
+    bounds = fluid.GetDataInformation().GetBounds()
+    cells = fluid.GetDataInformation().GetExtent()
+    flat = cells[5] - cells[4] == 1
+    largest = highest(fluid, args.field, times)
+    display = pv.Show(fluid_shown(fluid, flat, bounds), view)
+    display.SetRepresentationType("Surface")
+    colour(display, view, fluid, args.field, largest)
+    show_solids(view, flat, bounds, (bounds[1] - bounds[0]) / (cells[1] - cells[0]), args.broken)
+    box = pv.Show(named(pv.Outline(Input=fluid), "box"), view)
+    box.AmbientColor = box.DiffuseColor = [0.3, 0.3, 0.3]
+    label = pv.Show(pv.AnnotateTimeFilter(Input=fluid, Format="t = {time:.4g} s"), view)
+    label.Color, label.FontSize, label.WindowLocation = [0, 0, 0], 14, "Lower Right Corner"
+    scene = pv.GetAnimationScene()
+    scene.UpdateAnimationUsingDataTimeSteps()
+    scene.AnimationTime = times[-1] if args.time is None else min(times, key=lambda t: abs(t - args.time))
+    look(view, flat, bounds)
+    if paraview.fromGUI:
+        pv.Render(view)
+    else:
+        pv.SaveScreenshot(args.out, view, ImageResolution=view.ViewSize)
+        print(f"view | picture {args.out}")
+
+
+main()

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// What the coupling asks of LIGGGHTS.
+#include <atom.h>
+#include <comm.h>
+#include <domain.h>
+#include <error.h>
+#include <fmt/format.h>
+#include <integrate.h>
+#include <modify.h>
+#include <neighbor.h>
+#include <update.h>
+
+#include <memory>
+
+#include "liggghts_coupling/bond/bond_book.h"
+#include "liggghts_coupling/bond/leaving.h"
+#include "liggghts_coupling/host/coupling.h"
+#include "liggghts_coupling/host/fix_lbm_couple.h"
+#include "liggghts_coupling/host/script_checks.h"
+#include "liggghts_coupling/host/solid_hello.h"
+#include "protocol/transport/trace.h"
+
+namespace dem {
+
+protocol::EngineParticles FixLbmCouple::particles() {
+  return {.count = atom->nlocal,
+          .dimension = domain->dimension,
+          .group = groupbit,
+          .frozen = frozen_groups_,
+          .id = atom->tag,
+          .type = atom->type,
+          .mask = atom->mask,
+          .radius = atom->radius,
+          .mass = atom->rmass,
+          .x = atom->x,
+          .v = atom->v,
+          .omega = atom->omega,
+          .force = atom->f,
+          .torque = atom->torque,
+          .held = held_};
+}
+
+std::int64_t FixLbmCouple::step_number() const {
+  return update->ntimestep;
+}
+
+int FixLbmCouple::index_of(std::int64_t tag) const {
+  return atom->map(static_cast<int>(tag));
+}
+
+protocol::Setting FixLbmCouple::setting() const {
+  ScriptChecks(lmp).expect_box(Coupling::instance().session->fluid());
+  const auto corner = [](const double* x) { return protocol::Vec3{x[0], x[1], x[2]}; };
+  return {update->dt, corner(domain->boxlo), corner(domain->boxhi)};
+}
+
+/// What the script is set up to do.
+protocol::Hello FixLbmCouple::hello() const {
+  const protocol::Hello& fluid = Coupling::instance().session->fluid();
+  protocol::Hello hello = SolidHello(lmp, groupbit, coupling_->substeps()).collect();
+  if (hello.buoyancy != protocol::Buoyancy::BySolid)
+    hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
+                                                                : protocol::Buoyancy::ByFluid;
+  hello.first_interval = fluid.first_interval;
+  hello.schedule = fluid.schedule;
+  hello.features = protocol::kCheckpoints;
+  return hello;
+}
+
+/// Particles of which the fluid knows that leave the box.
+void FixLbmCouple::count_leaving() {
+  if (coupling_->begun()) left_ += static_cast<std::int64_t>(leaving(*lmp, groupbit).size());
+}
+
+/// What there is to say of particles that have left and of bonds; of these nothing where this
+/// process never had any.
+std::optional<protocol::SolidReport> FixLbmCouple::report() const {
+  protocol::SolidReport report{.grains_left = left_};
+  const BondBook& book = BondBook::instance();
+  const BondTally& t = book.tally;
+  if (t.created + t.gone() + book.intact == 0) return report;
+  report.bonds = {book.intact, t.tension, t.shear, t.left, t.lost};
+  if (!book.list_wanted) return report;
+  for (const auto& [a, b] : book.listed) report.list.push_back({a, b, 0});
+  for (const BreakEvent& e : book.broken)
+    report.list.push_back({e.first, e.second, e.mode == Break::Tension ? 1 : 2});
+  return report;
+}
+
+void FixLbmCouple::note_wishes(std::uint32_t flags) {
+  BondBook::instance().list_wanted = flags & protocol::kWantBonds;
+}
+
+void FixLbmCouple::note_end() {
+  const protocol::SolidSession& session = *Coupling::instance().session;
+  if (comm->me == 0 && logfile)
+    fmt::print(logfile,
+               "fix lbm/couple: {} intervals, {:.6g} s of waiting for the fluid, {:.6g} s of it "
+               "before the first step\n",
+               coupling_->interval() - session.fluid().first_interval, session.waited(),
+               waited_before_);
+}
+
+/// What a run does when it begins, in the order of LIGGGHTS' Verlet::setup, in the middle of one:
+/// particles sorted and distributed, neighbours found, forces computed. Ends in `setup`.
+void FixLbmCouple::set_up_again() {
+  modify->setup_pre_exchange();
+  domain->pbc();
+  domain->reset_box();
+  comm->setup();
+  if (neighbor->style) neighbor->setup_bins();
+  comm->exchange();
+  if (atom->sortfreq > 0) atom->sort();
+  comm->borders();
+  modify->setup_pre_neighbor();
+  neighbor->build();
+  neighbor->ncalls = 0;
+  update->integrate->setup_minimal(0);
+}
+
+void FixLbmCouple::begin_recording(const std::string& record) const {
+  Coupling& job = Coupling::instance();
+  const int rank = comm->me;
+  const std::string file = rank == 0 ? record : fmt::format("{}.{}", record, rank);
+  try {
+    auto writer =
+        std::make_unique<protocol::TraceWriter>(file, "solid", rank, job.channel->remote_size());
+    for (int r = 0; r < job.channel->remote_size(); ++r)  // came before this script was read
+      writer->record(protocol::Direction::Received, r, encode(job.session->fluid()));
+    job.channel = protocol::make_recording_channel(std::move(job.channel), std::move(writer));
+  } catch (const std::exception& e) {
+    error->one(FLERR, e.what());
+  }
+  job.session->use(*job.channel);
+}
+
+}  // namespace dem

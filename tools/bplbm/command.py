@@ -1,0 +1,87 @@
+"""bplbm COMMAND …: the command of an installed BPLBM. `bplbm --help` lists the commands."""
+
+import importlib
+import os
+import sys
+
+from bplbm.options import scene_files
+from bplbm.project import BIN, CASES, ROOT
+
+MODULES = {
+    "new": ("bplbm.new_scene", "makes the folder of a new scene from a template"),
+    "run": ("bplbm.run", "runs a scene, judges its results, draws its pictures and makes its page"),
+    "sweep": ("bplbm.sweep", "runs a scene with all combinations of some values: one table, one page"),
+    "compare": ("bplbm.compare", "shows the results of runs side by side"),
+    "draw_setup": ("bplbm.setup_drawing", "draws what the files of a scene describe"),
+    "make_packing": ("bplbm.packing", "makes a dense packing of grains"),
+    "report": ("bplbm.report.command", "speed against error of every choice, and the stability of hard cases"),
+}
+OWN = {"check": "looks at a scene without running it: grid, steps, numbers, what is on, the time to expect",
+       "where": "prints the folders of the programs, the scenes and the documents"}
+PROGRAMS = {"trace": "looks at, compares, cuts and draws recorded exchanges", "replay": "plays a recorded exchange to a program"}
+
+
+def help_text():
+    lines = [f"  {name:14}{text}" for name, text in
+             [*((n, t) for n, (_, t) in MODULES.items()), *OWN.items(), *PROGRAMS.items()]]
+    return "\n".join(["usage: bplbm COMMAND [options]     bplbm COMMAND --help says more", "", *lines, "",
+                      "Scenes are named by the path of their folder, or by their name in " + str(CASES) + ";",
+                      "outputs go to out/ of the current folder.", ""])
+
+
+def mistake(text):
+    print(f"bplbm | error | {text}", file=sys.stderr)
+    return 2
+
+
+def check(words):
+    """lbm check of a scene and its overlays, chosen as with bplbm run. Ends the process."""
+    from bplbm.options import arguments, fail
+    if not words or words[0] in ("-h", "--help"):
+        print("usage: bplbm check SCENE [--set NAME] [--variant NAME] [--KEY VALUE] [--overlay FILE]\n" + OWN["check"])
+        return 0
+    args = arguments(words)
+    if not args.scene:
+        fail("which scene? bplbm run --list shows them")
+    if args.scene.is_solid_alone:
+        fail(f"{args.scene.name} has no fluid: there is nothing that lbm could check")
+    os.execv(BIN / "lbm", [str(BIN / "lbm"), "check", *scene_files(args)])
+
+
+def where():
+    print(f"programs   {BIN}\nscenes     {CASES}\nPython     {ROOT / 'tools'}   (import bplbm)\n"
+          f"documents  {CASES / 'TUTORIAL.md'}, {CASES / 'TROUBLESHOOTING.md'}, {CASES / 'PYTHON.md'}")
+    return 0
+
+
+def main():
+    if len(sys.argv) < 2 or sys.argv[1] in ("-h", "--help"):
+        print(help_text(), end="")
+        return 0 if len(sys.argv) > 1 else 2
+    name, words = sys.argv[1], sys.argv[2:]
+    if name == "--version":
+        os.execv(BIN / "lbm", ["lbm", "--version"])
+    if name in PROGRAMS:
+        os.execv(BIN / name, [name, *words])
+    if name == "check":
+        return check(words)
+    if name == "where":
+        return where()
+    if name not in MODULES:
+        return mistake(f"there is no command '{name}'; there are: {', '.join([*MODULES, *OWN, *PROGRAMS])}")
+    sys.argv = [f"bplbm {name}", *words]
+    module = importlib.import_module(MODULES[name][0])
+    return module.main()
+
+
+def command_line():
+    """main() for the command. Ends the process."""
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("bplbm | stopped: interrupted by Ctrl-C", file=sys.stderr)
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    command_line()

@@ -1,0 +1,8 @@
+"""Thin command: see bplbm/checks/documents.py (--wrap: fills paragraphs that are too wide anew); with --commands
+bplbm/checks/commands.py, which needs the programs built."""
+
+import sys
+
+from bplbm.checks import commands, documents
+
+sys.exit(commands.main() if sys.argv[1:] == ["--commands"] else documents.main())
