@@ -32,6 +32,19 @@ struct BoxScene {
   Vec3 pressure_jump;  ///< across periodic sides, low minus high [Pa]
 };
 
+/// Factor of a value over time, from a file.
+struct TimeTableScene {
+  std::vector<double> times, factors;  ///< [s], 1; empty: none
+  bool repeats = false;
+
+  /// Largest |factor|, 1 without a table.
+  double largest() const {
+    double most = times.empty() ? 1.0 : 0.0;
+    for (const double f : factors) most = f > most ? f : -f > most ? -f : most;
+    return most;
+  }
+};
+
 /// Something else than no-slip at rest on a part of a side.
 struct BoundaryScene {
   enum class Kind { Velocity, Pressure, Outflow };
@@ -43,7 +56,8 @@ struct BoundaryScene {
   bool parabolic = false;
   double pressure = 0.0;   ///< against the reference [Pa]
   double ramp = 0.0;       ///< time in which the value comes up [s]
-  double frequency = 0.0;  ///< velocity × cos(2 pi f t) [Hz]
+  double frequency = 0.0;  ///< value × cos(2 pi f t) [Hz]
+  TimeTableScene table;    ///< value × factor
 };
 
 /// A surface from a file, as it lies in the box.
@@ -106,10 +120,12 @@ struct FluidScene {
   double density = 1000.0;  ///< [kg/m^3]
   double viscosity = 1e-6;  ///< kinematic [m^2/s]; where it varies, at the typical shear rate
   ViscosityScene law;
-  Vec3 gravity;                ///< [m/s^2]
-  Vec3 body_force;             ///< acceleration that drives the fluid [m/s^2]
-  double body_force_ramp = 0;  ///< time in which it comes up [s]
-  double velocity_scale = 0;   ///< largest expected speed of fluid or particles [m/s]
+  Vec3 gravity;                     ///< [m/s^2]
+  Vec3 body_force;                  ///< acceleration that drives the fluid [m/s^2]
+  double body_force_ramp = 0;       ///< time in which it comes up [s]
+  double body_force_frequency = 0;  ///< × cos(2 pi f t) [Hz]
+  TimeTableScene body_force_table;  ///< × factor
+  double velocity_scale = 0;        ///< largest expected speed of fluid or particles [m/s]
 };
 
 struct NumericsScene {

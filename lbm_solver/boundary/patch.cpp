@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace lbm {
 namespace {
@@ -60,12 +59,6 @@ std::vector<Link> side_links(const Lattice& lattice, const Domain& domain, const
       }
     }
   return links;
-}
-
-double InTime::factor(std::int64_t step) const {
-  const double t = static_cast<double>(step), pi = std::numbers::pi;
-  const double up = t < ramp_steps ? 0.5 * (1.0 - std::cos(pi * t / ramp_steps)) : 1.0;
-  return period_steps > 0.0 ? up * std::cos(2.0 * pi * t / period_steps) : up;
 }
 
 VelocityPatch::VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,

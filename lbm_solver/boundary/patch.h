@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lbm_solver/base/side.h"
+#include "lbm_solver/boundary/in_time.h"
 #include "lbm_solver/field/cell_pass.h"
 
 namespace lbm {
@@ -74,13 +75,6 @@ class Patch {
 
  private:
   std::vector<double> no_memory_;
-};
-
-/// How a boundary value depends on time: it comes up smoothly, ½(1 - cos), and may oscillate.
-struct InTime {
-  double ramp_steps = 0.0;    ///< full value from then on
-  double period_steps = 0.0;  ///< 0: steady; else cos(2 pi step / period)
-  double factor(std::int64_t step) const;
 };
 
 /// A wall or inlet of given velocity: f_q = f_-q* + 6 w_q c_q·u(s) [Ladd1994].

@@ -131,7 +131,49 @@ ViscosityScene read_viscosity(TableReader t) {
   return v;
 }
 
-FluidScene read_fluid(TableReader t, int d) {
+/// A value's factor over time, from a table `time,factor` beside the scene [s, 1].
+TimeTableScene read_time_table(TableReader& t, const std::string& key, const std::string& repeat,
+                               const std::string& scene_file) {
+  TimeTableScene table;
+  const std::string name = t.text_or(key, "");
+  table.repeats = repeat == "periodic";
+  if (name.empty() && table.repeats)
+    t.fail(key, "is missing, and it is to repeat", "give the table, or leave the repeat out");
+  if (name.empty()) return table;
+  const auto path = std::filesystem::path(scene_file).parent_path() / name;
+  const auto fail = [&](const std::string& problem, const std::string& remedy) {
+    t.fail(key, "= \"" + name + "\": " + problem, remedy);
+  };
+  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
+    fail(problem, "put a table `time,factor` beside the scene");
+  t.note(key + "_content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  if (line != "time,factor")
+    fail("begins with '" + line.substr(0, 60) + "'", "the first line is time,factor (in s and 1)");
+  for (int number = 2; std::getline(file, line); ++number) {
+    double time = 0.0, factor = 0.0;
+    char rest = 0;
+    if (std::sscanf(line.c_str(), "%lf,%lf%c", &time, &factor, &rest) != 2 ||
+        !std::isfinite(time + factor))
+      fail(fmt::format("line {}: '{}' is not two finite numbers", number, line.substr(0, 60)),
+           "give time,factor");
+    if (!table.times.empty() && time <= table.times.back())
+      fail(fmt::format("line {}: time {:.6g} s does not come after {:.6g} s", number, time,
+                       table.times.back()),
+           "sort the lines by time, each time once");
+    table.times.push_back(time);
+    table.factors.push_back(factor);
+  }
+  if (table.times.size() < 2) fail("holds fewer than two lines", "give at least two times");
+  if (table.repeats && table.factors.front() != table.factors.back())
+    fail("repeats, and its last factor is not its first",
+         "end with the factor that it begins with");
+  return table;
+}
+
+FluidScene read_fluid(TableReader t, int d, const std::string& scene_file) {
   FluidScene fluid;
   fluid.density = t.number("density", Bounds::positive(), "kg/m³");
   if (t.has("viscosity")) fluid.law = read_viscosity(t.table("viscosity"));
@@ -146,6 +188,14 @@ FluidScene read_fluid(TableReader t, int d) {
   fluid.gravity = t.vector_or_zero("gravity", d, "[m/s²]");
   fluid.body_force = t.vector_or_zero("body_force", d, "[m/s²]");
   fluid.body_force_ramp = t.number_or("body_force_ramp", 0.0, Bounds::non_negative(), "s");
+  fluid.body_force_frequency =
+      t.number_or("body_force_frequency", 0.0, Bounds::non_negative(), "Hz");
+  fluid.body_force_table =
+      read_time_table(t, "body_force_table",
+                      t.choice_or("body_force_repeat", "once", {"once", "periodic"}), scene_file);
+  for (const char* key : {"body_force_frequency", "body_force_table"})
+    if (t.has(key) && fluid.body_force.norm() == 0.0)
+      t.fail(key, "stands beside a body_force of zero", "give body_force, or leave it out");
   if (fluid.body_force_ramp > 0.0 && fluid.body_force.norm() == 0.0)
     t.fail("body_force_ramp", "stands beside a body_force of zero",
            "give body_force, or leave it out");
@@ -254,7 +304,7 @@ void read_extent(TableReader& t, const BoxScene& box, int axis, BoundaryScene& b
   }
 }
 
-BoundaryScene read_boundary(TableReader t, const BoxScene& box) {
+BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::string& scene_file) {
   using Kind = BoundaryScene::Kind;
   BoundaryScene b;
   std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
@@ -275,11 +325,15 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box) {
   if (b.kind == Kind::Velocity) {
     b.velocity = t.vector("velocity", box.dimension, "[m/s]");
     b.parabolic = t.choice_or("profile", "uniform", {"uniform", "parabolic"}) == "parabolic";
-    b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
     if (kind == "moving_wall" && b.velocity[axis] != 0.0)
       t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
   } else {
     b.pressure = t.number_or("pressure", 0.0, {}, "Pa");
+  }
+  if (b.kind != Kind::Outflow) {
+    b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
+    b.table = read_time_table(t, "table", t.choice_or("repeat", "once", {"once", "periodic"}),
+                              scene_file);
   }
   b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
   t.finish();
@@ -425,7 +479,7 @@ Scene read_tables(const toml::table& merged, const std::vector<std::string>& fil
   scene.title = root.text_or("title", std::filesystem::path(files.front()).stem().string());
   scene.box = read_box(root.table("box"));
   const int d = scene.box.dimension;
-  scene.fluid = read_fluid(root.table("fluid"), d);
+  scene.fluid = read_fluid(root.table("fluid"), d, files.front());
   scene.numerics = read_numerics(root.table("numerics"), d);
   if (root.has("particles")) scene.particles = read_particles(root.table("particles"), d);
   if (root.has("coupling")) scene.coupling = read_coupling(root.table("coupling"));
@@ -437,7 +491,7 @@ Scene read_tables(const toml::table& merged, const std::vector<std::string>& fil
   scene.checkpoint_every = run.number_or("checkpoint_every", 0.0, Bounds::non_negative(), "s");
   run.finish();
   for (const TableReader& t : root.tables("boundary"))
-    scene.boundaries.push_back(read_boundary(t, scene.box));
+    scene.boundaries.push_back(read_boundary(t, scene.box, files.front()));
   for (const TableReader& t : root.tables("obstacle"))
     scene.obstacles.push_back(read_obstacle(t, files.front(), scene.box));
   read_grains(root.optional_table("grains"), files.front(), d, scene.obstacles);

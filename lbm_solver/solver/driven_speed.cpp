@@ -42,8 +42,10 @@ double falling_speed(const Scene& s) {
 double largest_pressure(const Scene& s) {
   double lo = 0.0, hi = 0.0;
   for (const BoundaryScene& b : s.boundaries) {
-    lo = std::min(lo, b.pressure);
-    hi = std::max(hi, b.pressure);
+    const double most = std::abs(b.pressure) * b.table.largest();  // an oscillation has both signs
+    const bool both = b.frequency > 0.0 || !b.table.times.empty();
+    lo = std::min(lo, both ? -most : b.pressure);
+    hi = std::max(hi, both ? most : b.pressure);
   }
   return std::max(hi - lo, s.box.pressure_jump.cwiseAbs().maxCoeff());
 }
@@ -56,11 +58,13 @@ std::vector<Drive> drives(const Scene& s) {
   add(s.initial.velocity.norm(),
       fmt::format("initial.velocity = {:.3g} m/s", s.initial.velocity.norm()));
   for (const BoundaryScene& b : s.boundaries)
-    add(b.velocity.norm(), fmt::format("boundary.velocity = {:.3g} m/s", b.velocity.norm()));
+    add(b.velocity.norm() * b.table.largest(),
+        fmt::format("boundary.velocity = {:.3g} m/s", b.velocity.norm()));
   for (const ObstacleScene& o : s.obstacles)
     add(0.5 * o.diameter * o.spin.norm(),
         fmt::format("an obstacle's spin = {:.3g} rad/s", o.spin.norm()));
-  const double force = s.fluid.body_force.norm(), pressure = largest_pressure(s);
+  const double force = s.fluid.body_force.norm() * s.fluid.body_force_table.largest(),
+               pressure = largest_pressure(s);
   add(channel_speed(s, force), fmt::format("fluid.body_force = {:.3g} m/s²", force));
   add(std::sqrt(2.0 * pressure / s.fluid.density),
       fmt::format("a pressure difference of {:.3g} Pa", pressure));

@@ -52,7 +52,7 @@ Vec3 Fluid::body_force() const {
   return {p.force_x, p.force_y, p.force_z};
 }
 
-void Fluid::ramp_body_force(const InTime& in_time) {
+void Fluid::vary_body_force(const InTime& in_time) {
   force_in_time_ = in_time;
   set_body_force();
 }
@@ -66,10 +66,10 @@ void Fluid::set_body_force(const Vec3& force) {
   set_body_force();
 }
 
-/// That of the coming step. A kernel knows one force: while the force comes up, every step has a
-/// kernel of its own.
+/// That of the coming step, which is collided at the time of the present one. A ramp counts the
+/// step that ends. A kernel knows one force: while it changes, every step has a kernel of its own.
 void Fluid::set_body_force() {
-  const double part = force_in_time_.factor(steps_ + 1);
+  const double part = force_in_time_.ramp(steps_ + 1) * force_in_time_.wave(steps_);
   KernelChoice now = choice_;
   for (double CollisionParameters::*component :
        {&CollisionParameters::force_x, &CollisionParameters::force_y,
@@ -194,7 +194,7 @@ void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
 }
 
 void Fluid::make_steps(std::int64_t steps, const AfterStep& after_each) {
-  for (; steps > 0 && static_cast<double>(steps_) < force_in_time_.ramp_steps; --steps) {
+  for (; steps > 0 && force_in_time_.changes_after(steps_); --steps) {
     make_steps_under_force(1, after_each);
     set_body_force();
   }
@@ -453,7 +453,7 @@ void Fluid::load(const Record& record) {
   populations = ranks_->scatter(std::move(populations), lattice().Q);
   steps_ = record.integer("steps");
   stream_.set_odd(record.integer("odd") != 0);
-  if (force_in_time_.ramp_steps > 0.0) set_body_force();
+  if (force_in_time_.changes_after(0)) set_body_force();
   each_cell(n, [&](std::size_t number, int x, int y, int z) {
     for (int q = 0; q < lattice().Q; ++q) arriving(q, x, y, z) = populations[number * q_count + q];
   });

@@ -64,8 +64,8 @@ class Fluid {
     scheme_ = std::move(scheme);
     scheme_->set_body_force(body_force());
   }
-  /// The body force of the kernel's choice comes up as `in_time` says.
-  void ramp_body_force(const InTime& in_time);
+  /// The body force of the kernel's choice changes in time as `in_time` says.
+  void vary_body_force(const InTime& in_time);
   /// Another one from the coming step on. The kernel's choice must have one.
   void set_body_force(const Vec3& force);
   /// On a cell in the coming step.

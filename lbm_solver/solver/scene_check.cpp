@@ -24,6 +24,7 @@ constexpr double kMuchFaster = 30.0;    // than velocity_scale: grains resist, e
 constexpr double kLargeGrain = 0.2;     // m, in a coupled scene
 constexpr double kLargeReynolds = 1e5;  // of a cell
 constexpr double kThinObstacle = 4.0;   // cells
+constexpr double kStepsAPeriod = 20.0;  // of an oscillation
 constexpr double kTightLayer = 3.0;     // cells
 constexpr double kTouch = 1e-3;         // overlap over a diameter that rounding may make
 
@@ -205,7 +206,8 @@ std::pair<double, std::string> given_speed(const Scene& s) {
   const auto look = [&](double speed, const std::string& what) {
     if (speed > largest.first) largest = {speed, what};
   };
-  for (const BoundaryScene& b : s.boundaries) look(b.velocity.norm(), "boundary.velocity");
+  for (const BoundaryScene& b : s.boundaries)
+    look(b.velocity.norm() * b.table.largest(), "boundary.velocity");
   for (const ObstacleScene& o : s.obstacles)
     look(0.5 * o.diameter * o.spin.norm(), "an obstacle's spin");
   return largest;
@@ -241,7 +243,8 @@ double surplus(const Scene& s) {
 
 void check_balance(const Scene& s, Plan& plan) {
   for (const BoundaryScene& b : s.boundaries)
-    if (b.kind != BoundaryScene::Kind::Velocity || b.frequency > 0.0) return;
+    if (b.kind != BoundaryScene::Kind::Velocity || b.frequency > 0.0 || !b.table.times.empty())
+      return;
   if (const double more = surplus(s); std::abs(more) > 1e-3)
     plan.warnings.push_back(
         fmt::format("fluid {} through its boundaries and nothing makes up for it: the pressure {} "
@@ -258,6 +261,31 @@ void check_drives(const Scene& s, Plan& plan) {
           "{} can give {:.2g} m/s, {:.2g} times fluid.velocity_scale: are its value and "
           "unit right?",
           drive.what, drive.speed, drive.speed / s.fluid.velocity_scale));
+}
+
+/// An oscillation that a step or a run does not resolve.
+void check_frequency(const Scene& s, double frequency, const std::string& what, Plan& plan) {
+  if (frequency == 0.0) return;
+  if (const double steps = 1.0 / (frequency * plan.units.dt); steps < kStepsAPeriod)
+    throw InputError(
+        fmt::format("{}: {} = {:.4g} Hz has {:.3g} fluid steps a period", s.file, what, frequency,
+                    steps),
+        fmt::format("take at least {:.0f}: a lower frequency or a smaller numerics.time_step",
+                    kStepsAPeriod));
+  if (frequency * s.end_time < 1.0)
+    plan.warnings.push_back(fmt::format("{} = {:.4g} Hz: the run ends after {:.3g} of a period",
+                                        what, frequency, frequency * s.end_time));
+}
+
+void check_frequencies(const Scene& s, Plan& plan) {
+  for (const BoundaryScene& b : s.boundaries)
+    check_frequency(s, b.frequency, "boundary.frequency", plan);
+  check_frequency(s, s.fluid.body_force_frequency, "fluid.body_force_frequency", plan);
+  const bool varies = s.fluid.body_force_frequency > 0.0 || !s.fluid.body_force_table.times.empty();
+  if (varies && s.coupling && s.coupling->carry_weight)
+    throw InputError(s.file + ": coupling.carry_weight",
+                     "would change in time with the body force, and the particles' weight does not",
+                     "leave it out, or take a steady body force");
 }
 
 /// Keys that have no effect in this scene.
@@ -434,6 +462,7 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_balance(s, plan);
   check_drives(s, plan);
   check_sizes(s, plan);
+  check_frequencies(s, plan);
   check_idle_keys(s, plan);
   check_overlaps(s, plan);
   check_starts_in_shapes(s, plan);

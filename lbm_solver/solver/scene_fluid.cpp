@@ -39,19 +39,28 @@ Opening opening(const Scene& s, const Plan& p, const BoundaryScene& b) {
   return o;
 }
 
+/// A value's way in time, in steps.
+InTime in_time(const Plan& p, double ramp, double frequency, const TimeTableScene& table) {
+  InTime t{ramp / p.units.dt, frequency > 0.0 ? 1.0 / (frequency * p.units.dt) : 0.0};
+  if (table.times.empty()) return t;
+  TimeTable steps{table.times, table.factors, table.repeats};
+  for (double& time : steps.steps) time /= p.units.dt;
+  t.table = std::make_shared<TimeTable>(std::move(steps));
+  return t;
+}
+
 void add_boundary(const Scene& s, const Plan& p, const BoundaryScene& b, Fluid& fluid) {
   const Opening o = opening(s, p, b);
-  const InTime in_time{b.ramp / p.units.dt,
-                       b.frequency > 0.0 ? 1.0 / (b.frequency * p.units.dt) : 0.0};
+  const InTime value = in_time(p, b.ramp, b.frequency, b.table);
   if (b.kind == BoundaryScene::Kind::Velocity) {
     fluid.add(std::make_unique<VelocityPatch>(fluid.lattice(), fluid.links(o),
                                               p.units.to_lattice_velocity(b.velocity), b.parabolic,
-                                              o, in_time));
+                                              o, value));
     return;
   }
   const double drho = b.pressure / p.units.pressure();
   if (b.kind == BoundaryScene::Kind::Pressure) {
-    fluid.add(std::make_unique<PressurePatch>(fluid.links(o), b.side, drho, in_time));
+    fluid.add(std::make_unique<PressurePatch>(fluid.links(o), b.side, drho, value));
     return;
   }
   const double length = std::max({p.domain.nx, p.domain.ny, p.domain.nz});
@@ -191,8 +200,9 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
   for (const Geometry& shape : obstacle_shapes(s, p)) add_shape(s, shape, fluid);
   if (p.scheme != SolidScheme::ImmersedMovingBoundary)
     fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(), s.numerics.spring_stiffness));
-  if (s.fluid.body_force_ramp > 0.0)
-    fluid.ramp_body_force({s.fluid.body_force_ramp / p.units.dt, 0.0});
+  const InTime force =
+      in_time(p, s.fluid.body_force_ramp, s.fluid.body_force_frequency, s.fluid.body_force_table);
+  if (force.changes_after(0)) fluid.vary_body_force(force);
   fluid.prepare_walls();
   if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
   if (s.initial.kind == InitialScene::Kind::Rest && !p.kernel.force) return fluid;

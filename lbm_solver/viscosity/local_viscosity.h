@@ -24,16 +24,15 @@ class LocalViscosity {
         factor_(18.0 * p.smagorinsky * p.smagorinsky),
         table_(p.viscosity_table.get()) {}
 
-  /// Relaxation time of a cell that a solid covers in part. What the solid covers is not sheared,
-  /// so that the stress of the cell is too small for the fluid in it. By the square of the fluid's
-  /// part the torque between cylinders of ten cells comes out best (docs/viscosity.md). The closed
-  /// form of Smagorinsky's model goes without.
+  /// Relaxation time of a cell that a solid covers in part. What the solid covers is not sheared:
+  /// the stress of the cell is that of its fluid times the fluid's part (docs/viscosity.md). The
+  /// closed form of Smagorinsky's model goes without.
   /// @param q      second moments of the non-equilibrium populations
   /// @param fluid  part of the cell that is fluid
   template <class L, class V>
   [[gnu::always_inline]] V tau(const Symmetric<L, V>& q, const V& rho, const V& fluid) const {
     const V part = V(kLeastFluid) + V(1.0 - kLeastFluid) * fluid;
-    if (table_) return V(1.0) / tabulated_rate(q, rho * (part * part));
+    if (table_) return V(1.0) / tabulated_rate(q, rho * part);
     return smagorinsky_tau(q, rho);
   }
 

@@ -74,7 +74,7 @@ TEST(BodyForce, ComesUpInItsRamp) {
       Fluid f(
           {9, 7, Side::Periodic, Side::Periodic},
           {.collision = collision, .force = true, .parameters = {.tau = 0.6, .force_x = force}});
-      f.ramp_body_force(ramp);
+      f.vary_body_force(ramp);
       return f;
     };
     Fluid single = fluid(), whole = fluid(), restored = fluid();

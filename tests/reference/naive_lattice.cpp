@@ -182,7 +182,7 @@ double NaiveLattice::tau(const Cell& f, double part) const {
   Eigen::Matrix3d q = stress(f, equilibrium(m.rho, u), u);
   if (p.viscosity_table) {
     q.topLeftCorner(l_.D, l_.D).diagonal().array() -= q.trace() / l_.D;
-    const double rho = part == 1.0 ? m.rho : m.rho * std::pow(0.05 + 0.95 * part, 2);
+    const double rho = part == 1.0 ? m.rho : m.rho * (0.05 + 0.95 * part);
     return 1.0 / (*p.viscosity_table)(2.0 * q.squaredNorm() / (rho * rho));
   }
   return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + 18.0 * p.smagorinsky * p.smagorinsky *

@@ -63,7 +63,7 @@ TEST(BlockLoads, AreTheSameWithinARegion) {
   for (Fluid* fluid : {&one, &together}) {
     fluid->add_wall(block.from, block.to);
     fluid->prepare_walls();
-    fluid->ramp_body_force(InTime{5.0, 0.0});
+    fluid->vary_body_force(InTime{5.0, 0.0});
   }
   const BlockLoads of_one(one, {block}), of_together(together, {block});
   std::vector<double> step_by_step, in_a_region;
