@@ -236,6 +236,23 @@ def draw_history(fractures, histories, run):
     run.save(figure, "history.png")
 
 
+def draw_energy(history, run):
+    """Where the water and its work go, of one run."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 2.8), layout="constrained")
+    time = 1e3 * history["time"]
+    for key, label in (("work_of_the_inflow", "work of the inflow"), ("elastic_energy", "springs"),
+                       ("damping_energy", "damping"), ("released_energy", "broken bonds"),
+                       ("friction_energy", "friction")):
+        left.plot(time, history[key], label=label)
+    left.set(xlabel="time [ms]", ylabel="energy [J/m]", yscale="log", ylim=(1e-2, None))
+    for key, label in (("water_in", "pressed in"), ("leak_off", "leaked off"), ("crack_volume", "in the crack")):
+        right.plot(time, 1e6 * history[key], label=label)
+    right.set(xlabel="time [ms]", ylabel="water [cm³/m]")
+    for ax in (left, right):
+        ax.legend(fontsize=7)
+    run.save(figure, "energy.png")
+
+
 def note(label, fracture, history):
     length, height = (1e3 * value for value in fracture.size(fracture.crack))
     text = f"{len(fracture.time)} bonds broken"
@@ -263,6 +280,7 @@ def main():
     shown = [label for label in (first, "granular", "cloud") if label in fractures]
     snapshots({label: fractures[label] for label in dict.fromkeys(shown)})
     draw_history(fractures, histories, run)
+    draw_energy(histories[first], run)
     animate(run, "animation.gif", lambda ax, t, name: draw(ax, fractures[first], t, name), (4.2, 4.2))
 
 
