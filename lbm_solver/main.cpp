@@ -6,20 +6,23 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <exception>
 #include <memory>
+#include <optional>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/coupling/run.h"
 #include "lbm_solver/io/output_folder.h"
+#include "lbm_solver/io/scene_keys.h"
 #include "lbm_solver/io/scene_reader.h"
-#include "protocol/command_line.h"
-#include "protocol/mpi_channel.h"
-#include "protocol/numbers.h"
-#include "protocol/program.h"
-#include "protocol/trace.h"
-#include "protocol/watch.h"
+#include "protocol/program/command_line.h"
+#include "protocol/program/program.h"
+#include "protocol/program/watch.h"
+#include "protocol/transport/mpi_channel.h"
+#include "protocol/transport/trace.h"
+#include "protocol/wire/numbers.h"
 
 namespace {
 
@@ -34,7 +37,7 @@ struct Options {
   std::string record, progress = "auto";
   std::vector<int> grid;
   int threads = 0;
-  bool force = false, check = false, liggghts_vars = false, list = false;
+  bool force = false, check = false, liggghts_vars = false, list = false, keys = false;
 };
 
 void add_scene(CLI::App& app, Options& o) {
@@ -72,6 +75,7 @@ void define(CLI::App& app, Options& o) {
   app.add_option("--set", o.run.set, "name of the parameter set, for the summary");
   app.add_option("--variant", o.run.variant, "name of the variant, for the summary");
   app.add_flag("--list", o.list, "lattices, operators, terms and schemes that a scene may name");
+  app.add_flag("--keys", o.keys, "every key of a scene with type, unit, default, range, meaning");
   add_scene(app, o);
   auto* check = app.add_subcommand("check", "look at a scene without running it");
   check->add_flag("--liggghts-vars", o.liggghts_vars, "print the -var options for LIGGGHTS");
@@ -157,12 +161,25 @@ std::string trace_of(const std::string& file, const Decomposition& ranks) {
   return ranks.rank() == 0 ? file : fmt::format("{}.{}", file, ranks.rank());
 }
 
+/// How long a solid program may take to start [s]; negative: as the protocol has it.
+double connect_timeout(const std::optional<Scene>& scene) {
+  return scene && scene->coupling ? scene->coupling->connect_timeout : -1.0;
+}
+
 /// @param channel  set as soon as there is a partner, so that an error can be told to it
 void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol::World& world) {
-  world = protocol::connect(protocol::Role::Fluid);
+  std::exception_ptr mistake;  // in the scene: said when there is a partner who can hear it
+  std::optional<Scene> read;
+  try {
+    read = read_scene(o.scene);
+  } catch (...) {
+    mistake = std::current_exception();
+  }
+  world = protocol::connect(protocol::Role::Fluid, connect_timeout(read));
   if (world.coupled()) channel = protocol::make_mpi_channel(world, protocol::Role::Fluid);
   if (o.threads == 0) check_environment();
-  const Scene scene = read_scene(o.scene);
+  if (mistake) std::rethrow_exception(mistake);
+  const Scene& scene = *read;
   protocol::limit_waits(scene.coupling
                             ? scene.coupling->timeout
                             : protocol::seconds_from_environment("BPLBM_TIMEOUT", kAloneSeconds));
@@ -209,8 +226,8 @@ int main(int argc, char** argv) {
       "Lattice Boltzmann fluid of a coupled job: mpirun -np 1 lbm SCENE : -np 1 liggghts -in FILE"};
   define(app, options);
   if (const auto code = protocol::read_command_line(app, "lbm", argc, argv)) return *code;
-  if (options.list) {
-    fmt::print("{}", describe_choices());
+  if (options.list || options.keys) {
+    fmt::print("{}", options.keys ? describe_keys() : describe_choices());
     return protocol::kOk;
   }
   if (options.check) try {

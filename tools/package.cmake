@@ -4,7 +4,11 @@
 include(GNUInstallDirs)
 set(share ${CMAKE_INSTALL_DATADIR}/bplbm)
 
-install(TARGETS lbm liggghts replay trace reference_engine scheme_report step_report DESTINATION lib/bplbm/bin)
+foreach(program lbm liggghts replay trace reference_engine c_engine scheme_report step_report)
+  if(TARGET ${program})
+    install(TARGETS ${program} DESTINATION lib/bplbm/bin)
+  endif()
+endforeach()
 install(PROGRAMS tools/bplbm/bplbm.sh DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME bplbm)
 install(DIRECTORY tools/bplbm DESTINATION ${share}/tools
   PATTERN __pycache__ EXCLUDE PATTERN checks EXCLUDE)

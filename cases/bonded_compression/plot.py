@@ -1,5 +1,6 @@
 """Results and pictures of bonded_compression. Usage: plot.py OUT_FOLDER (tools/run calls it)."""
 
+import pathlib
 import re
 import sys
 
@@ -8,7 +9,9 @@ import numpy as np
 from matplotlib.collections import PatchCollection
 from bplbm import Run, draw_breaks, quantity, read_breaks, read_table, result, studies
 
-KINDS = ("compression", "tension", "brazilian", "notched20", "notched30", "notched40")
+DRY = pathlib.Path(__file__).parents[1] / "pressurised_notch" / "dry.csv"
+KINDS = ("compression", "tension", "brazilian", "notched20", "notched30", "notched40", "traction20", "traction30",
+         "traction40", "slot_notched", "slot_traction")
 
 
 class Test:
@@ -26,6 +29,9 @@ class Test:
         self.force = self.table["force"]  # N: of the sample on the lower grip, upwards; pulled: positive
         self.peak = int(np.argmax(sign * self.force))
         self.strength = abs(self.force[self.peak]) / self.p["width"]
+        if "traction" in self.kind:
+            self.peak = int(np.argmax(self.table["tension"] + self.table["shear"] > 0))
+            self.strength = self.notch_pressure() + self.force[self.peak] / self.p["width"]
 
     def strain(self, column):
         return self.table[column] / self.table[column][0] - 1.0
@@ -42,10 +48,26 @@ class Test:
         """Of a disc pressed across [Pa]."""
         return 2 * abs(self.force[self.peak]) / (np.pi * self.p["width"])
 
+    def notch_pressure(self):
+        """On the faces of the notch, when the first bond breaks [Pa]; the grips at rest take up a part of what it does."""
+        return self.p["notch_rate"] * self.table["time"][self.peak]
+
     def toughness(self):
         """Stress intensity [Pa √m] at the largest load of a plate with a notch of 2a in its middle, σ √(π a sec(π a/W))."""
-        a, width = self.p["notch"] / 2, self.p["width"]
-        return self.strength * np.sqrt(np.pi * a / np.cos(np.pi * a / width))
+        return self.strength * np.sqrt(np.pi * self.half_length()) * self.width_factor()
+
+    def half_length(self):
+        return self.p["notch"] * (1.0 if self.p["half"] else 0.5)
+
+    def width_factor(self):
+        return 1 / np.sqrt(np.cos(np.pi * self.half_length() / self.p["width"] / (2.0 if self.p["half"] else 1.0)))
+
+    def toughness_of_bonds(self):
+        """As toughness, but from the mean stress over the first bond ahead, of a diameter d; a pressure on the faces
+        alone lacks the stress that a pull leaves there without any notch."""
+        over = 0.25 * (self.p["diameter_min"] + self.p["diameter_max"]) / self.half_length()  # d/2a
+        factor = self.width_factor() * np.sqrt(1 + over) - ("traction" in self.kind) * np.sqrt(over)
+        return self.strength * np.sqrt(np.pi * self.half_length()) * factor
 
     def label(self):
         return f"seed {self.seed}" + (", parallel" if self.law == "parallel" else "")
@@ -58,6 +80,29 @@ def uniform_strain(test):
     area = p["width"] * p["height"]
     n, length = test.table["bonds"][0] / area, 0.5 * (p["diameter_min"] + p["diameter_max"])
     return 0.5 * n * length**2 * p["bond_stiffness"], 0.5 * n * length * p["bond_strength"]
+
+
+def pressed_and_pulled(tests):
+    """Results of notches that a pressure on their faces opens, beside those of the same samples that are pulled."""
+    found, told = [], []
+    for pressed_kind, pulled_kind in (("traction20", "notched20"), ("traction30", "notched30"), ("traction40", "notched40"),
+                                      ("slot_traction", "slot_notched")):
+        pressed, pulled = ([t for t in tests if t.kind == kind] for kind in (pressed_kind, pulled_kind))
+        if not pressed or not pulled:
+            continue
+        name = f"of {pressed_kind} over {pulled_kind}"
+        found.append(result(f"toughness {name}, first bond", mean(t.toughness_of_bonds() for t in pressed)
+                            / mean(t.toughness_of_bonds() for t in pulled), "1", 1.0,
+                            "superposition: a pressure on the faces does what a pull does, less the pull", 0.15))
+        if pressed_kind == "slot_traction":
+            kept = read_table(DRY)
+            found.append(result(f"pressure that starts {pressed_kind}, over that in pressurised_notch/dry.csv",
+                                mean(t.notch_pressure() for t in pressed)
+                                / mean(kept["pressure"][kept["seed"] == float(t.seed)][0] for t in pressed), "1", 1.0,
+                                "what that scene compares with water", 0.01))
+        told.append(quantity(f"toughness {name}, of a crack without grains", mean(t.toughness() for t in pressed)
+                             / mean(t.toughness() for t in pulled), "1"))
+    return found, told
 
 
 def mean(values):
@@ -90,7 +135,7 @@ def judge(tests):
             found.append(result("splitting strength over tensile strength", mean(t.splitting_strength() for t in split)
                                 / mean(t.strength for t in pulled), "1", 1.0,
                                 "a disc pressed across breaks by tension in its middle", 0.25))
-    notched = {kind: chosen(tests, kind) for kind in KINDS if "notched" in kind}
+    notched = {kind: chosen(tests, kind) for kind in KINDS if kind.startswith("notched")}
     means = {kind: mean(t.toughness() for t in group) for kind, group in notched.items() if group}
     for kind, value in means.items():
         told.append(quantity(f"toughness, notch of {kind[-2:]} mm", value, "Pa√m"))
@@ -111,6 +156,8 @@ def judge(tests):
     worst = max(np.abs(t.table["unbalanced"][:t.peak]).mean() / np.abs(t.force[t.peak]) for t in tests)
     found.append(result("difference of the grips' forces before failure, over the largest", worst, "1", 0.0,
                         "equilibrium: slow enough", 0.05, scale=1.0))
+    more = pressed_and_pulled(tests)
+    found, told = found + more[0], told + more[1]
     for kind in ("compression", "tension"):
         if group := chosen(tests, kind, "parallel"):
             told.append(quantity(f"{kind}, parallel bonds", mean(t.strength for t in group), "Pa"))
@@ -123,7 +170,7 @@ def draw_curves(tests, run):
               ("notched", "notched"))
     for ax, (kind, title) in zip(axes, groups):
         for t in tests:
-            if not t.kind.startswith(kind):
+            if not t.kind.startswith(kind) or t.p["slot"]:
                 continue
             style = {"contact": "-", "parallel": "--"}[t.law]
             name = t.label() + (f", {t.kind[-2:]} mm" if kind == "notched" else "")
@@ -151,7 +198,7 @@ def draw_samples(tests, run):
     shown = [next((t for t in tests if t.kind == kind and t.law == law), None)
              for kind, law in (("compression", "contact"), ("compression", "parallel"), ("tension", "contact"),
                                ("brazilian", "contact"), ("notched40", "contact"))]
-    shown = [t for t in shown if t]
+    shown = [t for t in shown if t] or tests[:1]
     figure, axes = plt.subplots(1, len(shown), figsize=(2.9 * len(shown), 3.2), squeeze=False)
     for ax, t in zip(axes[0], shown):
         discs = read_discs(t.run.folder / "discs.txt")
@@ -174,6 +221,10 @@ def main():
     tests = [Test(run)] + [Test(other) for other in studies(run).values()]
     run.write_results(*judge(tests))
     for t in tests:
+        if "traction" in t.kind:
+            print(f"run | note | {t.kind}, {t.label()}, {t.p['bond_strength']:g} N: the first bond breaks at a pressure of "
+                  f"{t.notch_pressure() / 1e3:.1f} kPa, {t.strength / 1e3:.1f} kPa without what the grips take up")
+            continue
         modulus, poisson = t.elastic()
         print(f"run | note | {t.kind}, {t.label()}, {t.p['bond_strength']:g} N: strength {t.strength / 1e3:.0f} kPa "
               f"at a strain of {100 * abs(t.strain('ends')[t.peak]):.2f} %, E = {modulus / 1e6:.1f} MPa, ν = {poisson:.2f}; broken "

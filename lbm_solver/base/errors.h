@@ -4,23 +4,23 @@
 #include <stdexcept>
 #include <string>
 
-#include "protocol/errors.h"
+#include "protocol/wire/errors.h"
 
 namespace lbm {
 
 /// A scene or command line that cannot work. Grammar: <where>: <problem>; <what to do>.
-class InputError : public protocol::ProtocolError {
+class InputError : public protocol::ProgramError {
  public:
   InputError(const std::string& problem, const std::string& remedy)
-      : ProtocolError(problem + "; " + remedy, protocol::kBadInput) {}
+      : ProgramError(problem + "; " + remedy, protocol::kBadInput) {}
   InputError(const std::string& where, const std::string& problem, const std::string& remedy)
-      : ProtocolError(where + ": " + problem + "; " + remedy, protocol::kBadInput) {}
+      : ProgramError(where + ": " + problem + "; " + remedy, protocol::kBadInput) {}
 };
 
 /// The computation left the range in which it means something.
-class NumericsError : public protocol::ProtocolError {
+class NumericsError : public protocol::ProgramError {
  public:
-  explicit NumericsError(const std::string& what) : ProtocolError(what, protocol::kNumerics) {}
+  explicit NumericsError(const std::string& what) : ProgramError(what, protocol::kNumerics) {}
 };
 
 }  // namespace lbm

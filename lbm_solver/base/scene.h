@@ -12,7 +12,7 @@
 
 #include "lbm_solver/base/side.h"
 #include "lbm_solver/base/units.h"
-#include "protocol/messages.h"
+#include "protocol/wire/messages.h"
 
 namespace lbm {
 
@@ -107,6 +107,7 @@ struct CouplingScene {
   double lubrication_range = 0.0;      ///< gap below which it acts [cells]; 0: off
   bool overlapped = false;             ///< both programs at once, loads one interval old
   double timeout = 300.0;              ///< longest wait for the solid [s]
+  double connect_timeout = 30.0;       ///< how long its program may take to start [s]
 };
 
 /// Something that is measured along the run and written to a table of its own.

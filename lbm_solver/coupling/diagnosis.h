@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lbm_solver/solver/plan.h"
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 

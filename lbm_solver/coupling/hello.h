@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lbm_solver/solver/plan.h"
-#include "protocol/messages.h"
+#include "protocol/wire/messages.h"
 
 namespace lbm {
 

@@ -10,7 +10,7 @@
 #include "lbm_solver/base/scene.h"
 #include "lbm_solver/field/decomposition.h"
 #include "lbm_solver/immersed/body.h"
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 

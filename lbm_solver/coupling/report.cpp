@@ -96,7 +96,7 @@ std::string describe_choices() {
   line("numerics.collision", known_collisions());
   line("numerics.solid_term", known_solid_terms());
   line("numerics.scheme", known_schemes());
-  return out + "or \"auto\"; lbm_solver/README.md has every key of a scene\n";
+  return out + "or \"auto\"; lbm_solver/docs/scene.md has every key of a scene\n";
 }
 
 std::string describe(const Scene& s, const Plan& p) {

@@ -11,8 +11,8 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/checkpoint.h"
-#include "protocol/checksum.h"
-#include "protocol/solid_parts.h"
+#include "protocol/program/checksum.h"
+#include "protocol/program/solid_parts.h"
 
 namespace lbm {
 namespace {
@@ -24,8 +24,13 @@ using Settings = std::map<std::string, std::string>;
 constexpr const char* kBeginAnew = "start again without --restart";
 
 /// Of output and of the run's end: nothing that the next step depends on.
-constexpr std::array kFree{"title",  "run.end_time",         "run.steady_below",
-                           "output", "run.checkpoint_every", "coupling.timeout"};
+constexpr std::array kFree{"title",
+                           "run.end_time",
+                           "run.steady_below",
+                           "output",
+                           "run.checkpoint_every",
+                           "coupling.timeout",
+                           "coupling.connect_timeout"};
 /// Of what drives the run: the state fits whatever they are.
 constexpr std::array kAcceptable{"fluid.gravity",
                                  "fluid.body_force",

@@ -6,7 +6,7 @@
 
 #include "lbm_solver/coupling/observers.h"
 #include "lbm_solver/coupling/restart.h"
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 
@@ -20,7 +20,7 @@ struct RunOptions {
 /// Runs a coupled scene to its end; rank 0 writes its summary.
 /// @param ranks    that share the box: all call it
 /// @param restart  what it goes on from; null: it begins anew
-/// @throws ProtocolError and its kinds; what was written until then stays
+/// @throws ProgramError and its kinds; what was written until then stays
 Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                     protocol::Channel& channel, const RunOptions& options, Log& log,
                     const Restart* restart = nullptr);

@@ -12,9 +12,9 @@
 #include <optional>
 
 #include "lbm_solver/base/errors.h"
-#include "protocol/checksum.h"
-#include "protocol/hdf5_file.h"
-#include "protocol/input_file.h"
+#include "protocol/program/checksum.h"
+#include "protocol/program/input_file.h"
+#include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
 

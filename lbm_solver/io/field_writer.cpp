@@ -11,7 +11,7 @@
 
 #include "lbm_solver/io/hdf5_array.h"
 #include "lbm_solver/io/view_script.h"
-#include "protocol/hdf5_file.h"
+#include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lbm_solver/base/units.h"
-#include "protocol/hdf5_file.h"
-#include "protocol/session.h"
+#include "protocol/transport/hdf5_file.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 

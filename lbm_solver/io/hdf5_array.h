@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "protocol/hdf5_file.h"
+#include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
 

@@ -31,7 +31,7 @@ CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double
   fmt::print(file_.get(), "{}\n", columns);
   for (const std::string& line : kept) fmt::print(file_.get(), "{}\n", line);
   if (std::fflush(file_.get()) != 0 || std::rename(part.c_str(), path.c_str()) != 0)
-    throw protocol::ProtocolError(path + " cannot be written; is the disk full?");
+    throw protocol::ProgramError(path + " cannot be written; is the disk full?");
 }
 
 void CsvWriter::row(std::span<const double> values) {
@@ -47,11 +47,11 @@ void CsvWriter::row(std::span<const double> values) {
 void CsvWriter::flush() {
   struct stat status {};
   if (std::fflush(file_.get()) != 0 || std::ferror(file_.get()))
-    throw protocol::ProtocolError(path_ + " cannot be written; is the disk full?");
+    throw protocol::ProgramError(path_ + " cannot be written; is the disk full?");
   if (fstat(fileno(file_.get()), &status) == 0 && status.st_nlink > 0) return;
-  throw protocol::ProtocolError(path_ +
-                                " was deleted while the run was writing it; start the run again, "
-                                "and leave its folder alone until it has ended");
+  throw protocol::ProgramError(path_ +
+                               " was deleted while the run was writing it; start the run again, "
+                               "and leave its folder alone until it has ended");
 }
 
 ProbeWriter::ProbeWriter(const std::string& folder, int dimension, double keep_until)

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 namespace lbm {
 
@@ -23,7 +23,7 @@ class CsvWriter {
   void row(std::initializer_list<double> values) {
     row(std::span<const double>(values.begin(), values.size()));
   }
-  /// @throws ProtocolError  what was written is lost: the disk is full, or somebody has deleted the
+  /// @throws ProgramError  what was written is lost: the disk is full, or somebody has deleted the
   /// file meanwhile, which the system would go on writing without a word
   void flush();
 

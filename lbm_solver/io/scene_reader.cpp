@@ -13,8 +13,8 @@
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
-#include "protocol/checksum.h"
-#include "protocol/input_file.h"
+#include "protocol/program/checksum.h"
+#include "protocol/program/input_file.h"
 
 namespace lbm {
 namespace {
@@ -158,6 +158,7 @@ CouplingScene read_coupling(TableReader t) {
   c.lubrication_range = t.number_or("lubrication_range", 0.0, {0.0, 10.0}, "cells");
   c.overlapped = t.choice_or("schedule", "serial", {"serial", "overlapped"}) == "overlapped";
   c.timeout = t.number_or("timeout", c.timeout, Bounds::positive(), "s");
+  c.connect_timeout = t.number_or("connect_timeout", c.connect_timeout, Bounds::positive(), "s");
   t.finish();
   return c;
 }
@@ -309,6 +310,7 @@ SensorScene read_sensor(TableReader t, const BoxScene& box) {
   SensorScene s;
   const int d = box.dimension;
   s.name = sensor_name(t);
+  if (!t.has("kind")) t.fail("kind", "is missing", "give line, plane or side");
   const std::string kind = t.choice_or("kind", "", {"line", "plane", "side"});
   s.kind = kind == "line" ? Kind::Line : kind == "side" ? Kind::Side : Kind::Plane;
   s.every = t.number_or("every", 0.0, Bounds::non_negative(), "s");
@@ -321,6 +323,7 @@ SensorScene read_sensor(TableReader t, const BoxScene& box) {
   } else if (s.kind == Kind::Plane) {
     std::vector<std::string> axes{"x", "y", "z"};
     axes.resize(d);
+    if (!t.has("axis")) t.fail("axis", "is missing", "give the plane's normal, as \"x\"");
     s.axis = t.choice_or("axis", "", axes)[0] - 'x';
     s.at = t.number("at", {box.origin[s.axis], box.origin[s.axis] + box.size[s.axis]}, "m");
     if (t.has("from")) s.from = t.vector("from", d, "[m]");
@@ -328,6 +331,8 @@ SensorScene read_sensor(TableReader t, const BoxScene& box) {
   } else {
     std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
     sides.resize(2 * d);
+    if (!t.has("side"))
+      t.fail("side", "is missing", fmt::format("give one of: {}", fmt::join(sides, ", ")));
     const std::string side = t.choice_or("side", "", sides);
     s.side = static_cast<SideName>(std::find(sides.begin(), sides.end(), side) - sides.begin());
   }
@@ -355,13 +360,10 @@ AverageScene read_average(TableReader t) {
   return a;
 }
 
-}  // namespace
-
-Scene read_scene(const std::vector<std::string>& files) {
-  toml::table merged = parse(files.front());
-  for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
+Scene read_tables(const toml::table& merged, const std::vector<std::string>& files,
+                  KeyNotes* keys) {
   Scene scene;
-  TableReader root(merged, "", files.front(), &scene.settings);
+  TableReader root(merged, "", files.front(), &scene.settings, keys);
   scene.file = fmt::format("{}", fmt::join(files, " + "));
   scene.title = root.text_or("title", std::filesystem::path(files.front()).stem().string());
   scene.box = read_box(root.table("box"));
@@ -394,6 +396,18 @@ Scene read_scene(const std::vector<std::string>& files) {
     scene.output.sensors.push_back(read_sensor(t, scene.box));
   root.finish();
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::vector<std::string>& files) {
+  toml::table merged = parse(files.front());
+  for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
+  return read_tables(merged, files, nullptr);
+}
+
+void note_keys(const std::string& scene, KeyNotes& keys) {
+  read_tables(toml::parse(scene), {"the reader's own example"}, &keys);
 }
 
 }  // namespace lbm

@@ -14,4 +14,8 @@ namespace lbm {
 ///         value outside its range
 Scene read_scene(const std::vector<std::string>& files);
 
+class KeyNotes;
+/// Notes the keys that are asked for while this scene, a text, is read.
+void note_keys(const std::string& scene, KeyNotes& keys);
+
 }  // namespace lbm

@@ -57,25 +57,67 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+/// In a table of keys; empty where any number will do.
+std::string range_text(const Bounds& b) {
+  if (b.exclusive && std::isinf(b.hi)) return fmt::format("> {}", b.lo);
+  if (std::isinf(b.lo) && std::isinf(b.hi)) return {};
+  if (std::isinf(b.hi)) return fmt::format("≥ {}", b.lo);
+  return fmt::format("{} … {}", b.lo, b.hi);
+}
+
+/// What stands between the brackets of "[m] along the side", or all of it.
+std::string bare_unit(const std::string& unit) {
+  const auto begin = unit.find('['), end = unit.find(']');
+  return begin == std::string::npos || end < begin ? unit : unit.substr(begin + 1, end - begin - 1);
+}
+
+constexpr const char* kRequired = "required";
+
+/// Adds to a list of alternatives what it does not hold yet.
+void add_alternatives(std::string& list, const std::string& more) {
+  std::istringstream words(more);
+  for (std::string word; std::getline(words, word, '|');) {
+    const std::string padded = "|" + list + "|";
+    if (padded.find("|" + word + "|") == std::string::npos)
+      list += (list.empty() ? "" : "|") + word;
+  }
+}
+
 }  // namespace
 
+void KeyNotes::add(const KeyNote& note) {
+  const auto known = std::find_if(notes_.begin(), notes_.end(),
+                                  [&](const KeyNote& n) { return n.key == note.key; });
+  if (known == notes_.end()) {
+    notes_.push_back(note);
+    return;
+  }
+  add_alternatives(known->type, note.type);
+  if (note.type == "choice") add_alternatives(known->range, note.range);
+}
+
 TableReader::TableReader(const toml::table& table, std::string path, std::string file,
-                         std::map<std::string, std::string>* settings)
+                         std::map<std::string, std::string>* settings, KeyNotes* keys)
     : table_(table),
       path_(std::move(path)),
       file_(std::move(file)),
       name_(path_),
-      settings_(settings) {}
+      settings_(settings),
+      keys_(keys) {}
+
+void TableReader::describe(const std::string& key, const std::string& type, const std::string& unit,
+                           const std::string& fallback, const std::string& range) const {
+  if (keys_) keys_->add({full(key), type, bare_unit(unit), fallback, range});
+}
 
 void TableReader::note(const std::string& key, const std::string& value) const {
   if (settings_) (*settings_)[name_.empty() ? key : name_ + "." + key] = value;
 }
 
 std::string TableReader::where(const toml::node* node, const std::string& key) const {
-  const std::string full = path_.empty() ? key : path_ + "." + key;
   const toml::source_region& source = node ? node->source() : table_.source();
-  if (!source.path || source.begin.line == 0) return fmt::format("{}: {}", file_, full);
-  return fmt::format("{}:{}: {}", *source.path, source.begin.line, full);
+  if (!source.path || source.begin.line == 0) return fmt::format("{}: {}", file_, full(key));
+  return fmt::format("{}:{}: {}", *source.path, source.begin.line, full(key));
 }
 
 void TableReader::fail(const std::string& key, const std::string& problem,
@@ -105,13 +147,13 @@ const toml::node& TableReader::need(const std::string& key, const std::string& w
 TableReader TableReader::table(const std::string& key) {
   const toml::node& node = need(key, "a table [" + key + "]");
   if (!node.is_table()) fail(key, "= " + shown(node) + " is no table", "write [" + key + "]");
-  return {*node.as_table(), path_.empty() ? key : path_ + "." + key, file_, settings_};
+  return {*node.as_table(), full(key), file_, settings_, keys_};
 }
 
 TableReader TableReader::optional_table(const std::string& key) {
   asked_.insert(key);
   if (has(key)) return table(key);
-  return {no_table(), path_.empty() ? key : path_ + "." + key, file_, settings_};
+  return {no_table(), full(key), file_, settings_, keys_};
 }
 
 std::vector<TableReader> TableReader::tables(const std::string& key) {
@@ -120,7 +162,7 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
   if (!node) return result;
   if (!node->is_array_of_tables()) fail(key, "is no list of tables", "write [[" + key + "]]");
   for (const toml::node& entry : *node->as_array()) {
-    result.emplace_back(*entry.as_table(), key, file_, settings_);
+    result.emplace_back(*entry.as_table(), key, file_, settings_, keys_);
     result.back().name_ = fmt::format("{}.{}", key, result.size());
   }
   return result;
@@ -141,18 +183,21 @@ double TableReader::to_number(const toml::node& node, const std::string& key, co
 }
 
 double TableReader::number(const std::string& key, const Bounds& bounds, const std::string& unit) {
+  describe(key, "number", unit, kRequired, range_text(bounds));
   const double value = to_number(need(key, bounds_text(bounds, unit)), key, bounds, unit);
   note(key, fmt::format("{}", value));
   return value;
 }
 double TableReader::number_or(const std::string& key, double fallback, const Bounds& bounds,
                               const std::string& unit) {
+  describe(key, "number", unit, fmt::format("{}", fallback), range_text(bounds));
   const double value = optional_number(key, bounds, unit).value_or(fallback);
   note(key, fmt::format("{}", value));
   return value;
 }
 std::optional<double> TableReader::optional_number(const std::string& key, const Bounds& bounds,
                                                    const std::string& unit) {
+  describe(key, "number", unit, "", range_text(bounds));
   const toml::node* node = find(key);
   if (!node) return std::nullopt;
   const double value = to_number(*node, key, bounds, unit);
@@ -161,17 +206,19 @@ std::optional<double> TableReader::optional_number(const std::string& key, const
 }
 
 std::optional<int> TableReader::optional_integer(const std::string& key, int least) {
+  describe(key, "integer", "", "", fmt::format("≥ {}", least));
   const toml::node* node = find(key);
   if (!node) return std::nullopt;
   const auto value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
   if (!value || *value < least || *value > 1000000000)
-    fail(key, fmt::format("= {} is no such number", shown(*node)),
+    fail(key, fmt::format("= {} must be an integer ≥ {}", shown(*node), least),
          fmt::format("give a whole number from {}", least));
   note(key, fmt::format("{}", *value));
   return static_cast<int>(*value);
 }
 
 bool TableReader::flag_or(const std::string& key, bool fallback) {
+  describe(key, "true or false", "", fallback ? "true" : "false", "");
   const toml::node* node = find(key);
   if (node && !node->is_boolean())
     fail(key, fmt::format("= {} is neither true nor false", shown(*node)), "give true or false");
@@ -181,6 +228,11 @@ bool TableReader::flag_or(const std::string& key, bool fallback) {
 }
 
 std::string TableReader::text_or(const std::string& key, const std::string& fallback) {
+  describe(key, "text", "", "", "");
+  return text(key, fallback);
+}
+
+std::string TableReader::text(const std::string& key, const std::string& fallback) {
   const toml::node* node = find(key);
   if (node && !node->is_string())
     fail(key, fmt::format("= {} is no text", shown(*node)), "put it in quotation marks");
@@ -191,7 +243,9 @@ std::string TableReader::text_or(const std::string& key, const std::string& fall
 
 std::string TableReader::choice_or(const std::string& key, const std::string& fallback,
                                    const std::vector<std::string>& known) {
-  const std::string value = text_or(key, fallback);
+  describe(key, "choice", "", fallback.empty() ? kRequired : "\"" + fallback + "\"",
+           fmt::format("{}", fmt::join(known, "|")));
+  const std::string value = text(key, fallback);
   for (const auto& k : known)
     if (value == k) return value;
   fail(key, fmt::format("= \"{}\" is unknown", value),
@@ -228,11 +282,13 @@ Vec3 TableReader::to_vector(const toml::node& node, const std::string& key, int 
 }
 
 Vec3 TableReader::vector(const std::string& key, int dimension, const std::string& unit) {
+  describe(key, "vector", unit, kRequired, "");
   const Vec3 v = to_vector(need(key, vector_text(dimension, unit)), key, dimension, unit);
   note(key, values_text({v.data(), static_cast<std::size_t>(dimension)}));
   return v;
 }
 Vec3 TableReader::vector_or_zero(const std::string& key, int dimension, const std::string& unit) {
+  describe(key, "vector", unit, "0", "");
   const toml::node* node = find(key);
   const Vec3 v = node ? to_vector(*node, key, dimension, unit) : Vec3();
   note(key, values_text({v.data(), static_cast<std::size_t>(dimension)}));
@@ -241,6 +297,7 @@ Vec3 TableReader::vector_or_zero(const std::string& key, int dimension, const st
 
 std::vector<Vec3> TableReader::vectors_or_none(const std::string& key, int dimension,
                                                const std::string& unit) {
+  describe(key, "list of vectors", unit, "none", "");
   std::vector<Vec3> result;
   const toml::node* node = find(key);
   if (!node) return result;
@@ -259,6 +316,8 @@ std::vector<Vec3> TableReader::vectors_or_none(const std::string& key, int dimen
 std::vector<double> TableReader::numbers_or(const std::string& key,
                                             const std::vector<double>& fallback,
                                             const Bounds& bounds, const std::string& unit) {
+  describe(key, "number|list of numbers", unit, fmt::format("{}", fmt::join(fallback, ", ")),
+           range_text(bounds));
   const toml::node* node = find(key);
   std::vector<double> values = fallback;
   if (node && !node->is_array()) {
@@ -273,6 +332,7 @@ std::vector<double> TableReader::numbers_or(const std::string& key,
 }
 
 Range TableReader::range(const std::string& key, const Bounds& bounds, const std::string& unit) {
+  describe(key, "number|[smallest, largest]", unit, kRequired, range_text(bounds));
   const toml::node& node = need(key, bounds_text(bounds, unit) + ", or [smallest, largest]");
   if (!node.is_array()) {
     const double value = to_number(node, key, bounds, unit);
@@ -291,6 +351,7 @@ Range TableReader::range(const std::string& key, const Bounds& bounds, const std
 }
 
 std::map<std::string, std::string> TableReader::all_as_text() {
+  describe("NAME", "number|text", "", "none", "");
   std::map<std::string, std::string> result;
   for (const auto& [key, node] : table_) {
     const std::string name(key.str());

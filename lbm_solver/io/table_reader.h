@@ -24,13 +24,31 @@ struct Bounds {
   static Bounds non_negative() { return {0.0}; }
 };
 
+/// What the reader knows of a key: how `lbm --keys` lists it.
+struct KeyNote {
+  std::string key;  ///< full name; of a list of tables without a number
+  std::string type, unit, fallback, range;
+};
+
+/// The keys that a reader asked for, each once, in the order in which it first did.
+class KeyNotes {
+ public:
+  /// A key that is asked for again, in another dimension, say, adds what else it may be.
+  void add(const KeyNote& note);
+  const std::vector<KeyNote>& all() const { return notes_; }
+
+ private:
+  std::vector<KeyNote> notes_;
+};
+
 /// One table of a scene file. Every getter notes its key; `finish` complains about keys that nobody
 /// asked for. All errors are InputError and name file, line, key, value and remedy.
 class TableReader {
  public:
   /// @param settings  gets every value that is asked for, defaults too, under its full key
+  /// @param keys      gets every key that is asked for, with its type, unit, default and range
   TableReader(const toml::table& table, std::string path, std::string file,
-              std::map<std::string, std::string>* settings = nullptr);
+              std::map<std::string, std::string>* settings = nullptr, KeyNotes* keys = nullptr);
 
   /// Puts a value among the settings that is no key of the table.
   void note(const std::string& key, const std::string& value) const;
@@ -78,6 +96,10 @@ class TableReader {
 
  private:
   const toml::node* find(const std::string& key);
+  std::string text(const std::string& key, const std::string& fallback);
+  std::string full(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+  void describe(const std::string& key, const std::string& type, const std::string& unit,
+                const std::string& fallback, const std::string& range) const;
   /// What stands in the table in place of a key that is missing.
   std::string misspelt(const std::string& key) const;
   const toml::node& need(const std::string& key, const std::string& what);
@@ -91,6 +113,7 @@ class TableReader {
   std::string path_, file_;
   std::string name_;  // path_, of a table of a list with its number from 1
   std::map<std::string, std::string>* settings_;
+  KeyNotes* keys_;
   std::set<std::string> asked_;  // keys whose values were wanted
   std::set<std::string> known_;  // also those that were only looked for
 };

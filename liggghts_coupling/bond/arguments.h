@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "protocol/numbers.h"
+#include "protocol/wire/numbers.h"
 
 namespace dem {
 

@@ -22,7 +22,7 @@
 #include "liggghts_coupling/bond/bond_book.h"
 #include "liggghts_coupling/bond/leaving.h"
 #include "liggghts_coupling/bond/pair_property.h"
-#include "protocol/input_file.h"
+#include "protocol/program/input_file.h"
 
 namespace dem {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "protocol/mpi_channel.h"
-#include "protocol/session.h"
+#include "protocol/transport/mpi_channel.h"
+#include "protocol/wire/session.h"
 
 namespace dem {
 

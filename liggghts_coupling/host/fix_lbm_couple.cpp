@@ -20,11 +20,11 @@
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/script_checks.h"
 #include "liggghts_coupling/host/solid_hello.h"
-#include "protocol/agreement.h"
-#include "protocol/numbers.h"
-#include "protocol/program.h"
-#include "protocol/trace.h"
-#include "protocol/watch.h"
+#include "protocol/program/program.h"
+#include "protocol/program/watch.h"
+#include "protocol/transport/trace.h"
+#include "protocol/wire/agreement.h"
+#include "protocol/wire/numbers.h"
 
 namespace dem {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "protocol/session.h"
-#include "protocol/solid_parts.h"
+#include "protocol/program/solid_parts.h"
+#include "protocol/wire/session.h"
 
 namespace dem {
 

@@ -19,8 +19,8 @@
 #include "liggghts_coupling/bond/bond_ledger.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
-#include "protocol/file_catcher.h"
-#include "protocol/program.h"
+#include "protocol/program/file_catcher.h"
+#include "protocol/program/program.h"
 
 namespace dem {
 
@@ -71,7 +71,7 @@ void FixLbmCouple::keep_last_state(const std::exception& error) {
   protocol::SolidParts fault = parts_->beside("fault");
   try {
     write_part(fault);
-  } catch (const protocol::ProtocolError& second) {  // the first is what must be heard
+  } catch (const protocol::ProgramError& second) {  // the first is what must be heard
     fmt::print(stderr, "liggghts | its last state is not kept: {}\n", second.what());
   }
 }

@@ -23,9 +23,9 @@
 #include "liggghts_coupling/host/register_styles.h"
 #include "liggghts_coupling/host/screen_ear.h"
 #include "liggghts_coupling/host/script_names.h"
-#include "protocol/input_file.h"
-#include "protocol/program.h"
-#include "protocol/watch.h"
+#include "protocol/program/input_file.h"
+#include "protocol/program/program.h"
+#include "protocol/program/watch.h"
 
 namespace dem {
 
@@ -80,7 +80,7 @@ void check_script(const Arguments& arguments) {
   const std::string script = option(arguments, "-in", "-i");
   const std::string problem = script.empty() ? "" : protocol::why_unreadable(script);
   if (problem.empty()) return;
-  throw protocol::ProtocolError(
+  throw protocol::ProgramError(
       fmt::format("{}: {}; give -in SCRIPT, or start in a folder with in.liggghts", script,
                   problem),
       protocol::kBadInput);

@@ -2,8 +2,8 @@
 #include "liggghts_coupling/host/mpi_guards.h"
 
 #include "liggghts_coupling/host/coupling.h"
-#include "protocol/mpi_calls.h"
-#include "protocol/program.h"
+#include "protocol/program/mpi_calls.h"
+#include "protocol/program/program.h"
 
 namespace dem {
 namespace {

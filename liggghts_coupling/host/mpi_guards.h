@@ -10,7 +10,8 @@ namespace dem {
 
 /// LIGGGHTS believes that MPI_COMM_WORLD is its own and that it may end the process when it likes.
 /// Functions that stand in front of the library's (MPI's profiling interface) see to it that
-/// - every call on MPI_COMM_WORLD, of LIGGGHTS or VTK, uses `local` instead (protocol/mpi_calls.h);
+/// - every call on MPI_COMM_WORLD, of LIGGGHTS or VTK, uses `local` instead
+/// (protocol/program/mpi_calls.h);
 /// - an MPI_Finalize or MPI_Abort is LIGGGHTS ending with an error: the fluid is told why, and the
 ///   job is aborted.
 /// @param reason  of such an end, in words

@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-#include "protocol/errors.h"
+#include "protocol/wire/errors.h"
 
 namespace dem {
 namespace {
@@ -23,7 +23,7 @@ constexpr std::array kClumps{"multisphere", "multisphere/nointegration", "multis
 
 template <class... Args>
 [[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) {
-  throw protocol::ProtocolError(
+  throw protocol::ProgramError(
       "fix lbm/couple: " + fmt::format(format, std::forward<Args>(args)...), protocol::kBadInput);
 }
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "protocol/overlap.h"
+#include "protocol/wire/overlap.h"
 
 namespace dem {
 
-/// @throws protocol::ProtocolError  exit code 2: what is wrong, which fix, what to do
+/// @throws protocol::ProgramError  exit code 2: what is wrong, which fix, what to do
 class ScriptChecks : protected LAMMPS_NS::Pointers {
  public:
   explicit ScriptChecks(LAMMPS_NS::LAMMPS* lammps) : Pointers(lammps) {}

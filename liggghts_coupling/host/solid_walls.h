@@ -3,7 +3,7 @@
 
 #include <lammps.h>
 
-#include "protocol/messages.h"
+#include "protocol/wire/messages.h"
 
 namespace dem {
 

@@ -22,8 +22,10 @@ constexpr double kTimeout = 2.0;                             // of the scenes he
 constexpr double kLimit = kTimeout + 10.0 * BPLBM_PATIENCE;  // for both programs to end
 const std::string kPeer = test::kBin + "/scripted_peer solid leave ";
 const std::string kPython =
-    "env PYTHONPATH=" BPLBM_SOURCE_DIR "/tools/engines/python /usr/bin/python3 " BPLBM_SOURCE_DIR
+    "env PYTHONPATH=" BPLBM_SOURCE_DIR "/protocol/python /usr/bin/python3 " BPLBM_SOURCE_DIR
     "/tests/support/leaving_peer.py ";
+
+const std::string kC = test::kBin + "/leaving_solid ";
 
 /// A short run with a short time-out.
 class Scene : public SettlingDisc {
@@ -76,9 +78,8 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
   const auto& [name, peer, how] = GetParam();
   std::vector<std::pair<const Stage*, std::future<JobResult>>> jobs;
   for (const Stage& stage : kStages) {
-    const bool python = peer == kPython;
-    if (python && (stage.name == "hello" || stage.name == "goodbye" || stage.name == "version"))
-      continue;  // wire.py knows no goodbye, and says its hello and its answer at once
+    if (peer != kPeer && (stage.name == "hello" || stage.name == "version"))
+      continue;  // Python's and C's interfaces say their hello and their answer at once
     jobs.emplace_back(&stage, std::async(std::launch::async, [&stage, &peer = peer, &how = how] {
       const Scene scene;
       return test::run(scene.job(peer + stage.name + " " + how), scene.folder(), 30.0);
@@ -91,8 +92,12 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
       said = (how == "farewell" ? "solid rank 0 left without "
                                 : "no answer from solid rank 0 for 2 s while waiting for ") +
              stage->lacking;
+    // The library answers for its process, so the fluid knows that it does nothing any more.
+    const bool asked = peer == kC && how == "finalize" && stage->exit_code == 0;
     if (how == "exit")
       expect_end(result.get(), 1, {});
+    else if (asked)
+      expect_end(result.get(), 1, {said, "solid rank 0 did not end within 2 s, and did nothing"});
     else
       expect_end(result.get(), stage->exit_code, {said});
   }
@@ -102,10 +107,34 @@ INSTANTIATE_TEST_SUITE_P(All, LeavingSolid,
                          testing::Values(Leaving{"CppByFinalize", kPeer, "finalize"},
                                          Leaving{"CppByExit", kPeer, "exit"},
                                          Leaving{"CppWithFarewell", kPeer, "farewell"},
+                                         Leaving{"CByFinalize", kC, "finalize"},
+                                         Leaving{"CByExit", kC, "exit"},
+                                         Leaving{"CWithFarewell", kC, "farewell"},
                                          Leaving{"PythonByFinalize", kPython, "finalize"},
                                          Leaving{"PythonByExit", kPython, "exit"},
                                          Leaving{"PythonWithFarewell", kPython, "farewell"}),
                          [](const auto& info) { return info.param.name; });
+
+// A Python engine that leaves its `with` block, without a word, says goodbye.
+TEST(PythonBlock, SaysGoodbyeWhenItIsLeft) {
+  const Scene scene;
+  for (const int ranks : {1, 2})
+    expect_end(test::run(scene.job(kPython + "block farewell", ranks), scene.folder(), 30.0), 0,
+               {"ending       stopped by solid: leaving_peer ended"});
+}
+
+TEST(FailingSolid, InCTellsTheFluidAtEveryStage) {
+  std::vector<std::future<JobResult>> jobs;
+  for (const char* stage : {"connected", "agreed", "states", "running"})
+    jobs.push_back(std::async(std::launch::async, [stage] {
+      const Scene scene;
+      return test::run(scene.job(kC + stage + " fail"), scene.folder(), 30.0);
+    }));
+  for (auto& job : jobs)
+    expect_end(job.get(), 42,
+               {"leaving_solid | error | has had enough",
+                "lbm | error | the solid program stopped: has had enough"});
+}
 
 TEST(LeavingFluid, EndsLiggghts) {
   Scene scene;

@@ -1,58 +1,137 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// Every engine before the same judge (conformance_fluid), and the same scenes with two of them.
+/// Every engine before the same judge (bplbm-conformance), and the same scenes with two of them.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <sstream>
 
 #include "tests/support/coupled_job.h"
 
 namespace {
 
-const std::string kSupport = BPLBM_SOURCE_DIR "/tests/support/";
+const std::string kEngines = BPLBM_SOURCE_DIR "/tools/engines/";
+const std::string kPython = "/usr/bin/python3 ";
 
 /// Command of an engine before the judge.
 std::string command(const std::string& engine) {
-  if (engine == "liggghts")
-    return test::kLiggghts + " -in " + kSupport + "conformance.liggghts -screen none";
-  if (engine == "lammps")
-    return test::kBin + "/lammps_engine -in " + kSupport + "conformance.lammps -screen none";
-  if (engine == "reference") return test::kBin + "/reference_engine";
-  return "/usr/bin/python3 " BPLBM_SOURCE_DIR "/tools/engines/python/engine.py";
+  const std::string script = kEngines + "conformance/in." + engine + " -screen none -log none";
+  if (engine == "liggghts") return test::kLiggghts + " -in " + script;
+  if (engine == "lammps") return test::kBin + "/lammps_engine -in " + script;
+  if (engine == "reference" || engine == "c" || engine == "fortran")
+    return test::kBin + "/" + engine + "_engine";
+  return kPython + kEngines + engine + "/engine.py";
 }
 
-struct Check {
-  const char *engine, *name;
-  int exit_code;
+bool installed(const std::string& engine) {
+  if (engine == "fortran") return std::filesystem::exists(test::kBin + "/fortran_engine");
+  return engine != "yade" || std::filesystem::exists("/usr/bin/yade");
+}
+
+const std::string kJudge = "exec " + test::kBin + "/bplbm-conformance ";
+
+class EngineTest : public testing::TestWithParam<std::string> {
+ protected:
+  EngineTest() {
+    if (!installed(GetParam()))
+      skip_ = GetParam() + " is not installed (apt-get install yade gfortran)";
+  }
+  void judge(const std::string& options) const {
+    if (!skip_.empty()) GTEST_SKIP() << skip_;
+    const test::TemporaryFolder folder;
+    const auto job =
+        test::run(kJudge + options + " -- " + command(GetParam()), folder.path(), 100.0);
+    EXPECT_FALSE(job.timed_out) << job.output;
+    EXPECT_EQ(job.exit_code, 0) << job.output;
+  }
+  std::string skip_;
 };
 
-class EngineTest : public testing::TestWithParam<Check> {};
-
-TEST_P(EngineTest, KeepsToTheProtocol) {
-  const Check& check = GetParam();
-  const test::TemporaryFolder folder;
-  const auto job = test::run(
-      test::mpirun({test::kBin + "/conformance_fluid " + check.name}, {command(check.engine)}),
-      folder.path(), 30.0);
-  EXPECT_FALSE(job.timed_out) << job.output;
-  EXPECT_EQ(test::read_file(folder.path() + "/conformance.txt"), "ok\n") << job.output;
-  EXPECT_EQ(job.exit_code, check.exit_code) << job.output;
+// Most of them wait for something most of the time.
+TEST_P(EngineTest, PassesEveryCheck) {
+  judge("--jobs 6");
 }
+INSTANTIATE_TEST_SUITE_P(All, EngineTest,
+                         testing::Values("liggghts", "lammps", "yade", "reference", "python", "c",
+                                         "fortran"),
+                         [](const auto& info) { return info.param; });
 
-std::vector<Check> checks() {
-  std::vector<Check> all;
-  for (const char* engine : {"liggghts", "lammps", "reference", "python"}) {
-    for (const char* name : {"move", "collide", "corner", "vanish", "late", "stop", "checkpoint"})
-      all.push_back({engine, name, 0});
-    for (const char* name : {"version", "box"}) all.push_back({engine, name, 2});
-    all.push_back({engine, "fail", 3});
+class EngineOfManyRanks : public EngineTest {};
+TEST_P(EngineOfManyRanks, PassesWithTwoOnBothSides) {
+  judge(
+      "--jobs 4 --fluid-ranks 2 --solid-ranks 2 "
+      "move mass collide corner vanish late epoch checkpoint density fail fault end end_left");
+}
+INSTANTIATE_TEST_SUITE_P(All, EngineOfManyRanks,
+                         testing::Values("liggghts", "lammps", "python", "c"),
+                         [](const auto& info) { return info.param; });
+
+// ---- the judge ----------------------------------------------------------------------------------
+
+/// What an engine does wrong (tests/support/bad_engine.py), the check that must find it, and what
+/// that says.
+struct Sin {
+  const char *name, *check, *wrong;
+};
+const Sin kSins[] = {
+    {"half_load", "move", "impulse of an interval"},
+    {"short_way", "move", "way of an interval"},
+    {"unit_depth", "mass", "density 6000 kg/m³"},
+    {"ring", "mass", "inertia of a disc"},
+    {"no_contact", "collide", "they do not part"},
+    {"no_image", "corner", "interval 2: 0 particles instead of 1"},
+    {"all_vanish", "vanish", "the one that left is still there"},
+    {"early", "late", "interval 0: 1 particles instead of 0"},
+    {"same_epoch", "epoch", "jumped from"},
+    {"only_whole_discs", "ranks", "was not sent to fluid rank 1, which it touches"},
+    {"never_last", "stop", "it says not the last"},
+    {"unasked_checkpoint", "checkpoint", "checkpoint not written when asked, or unasked"},
+    {"no_checkpoint_file", "checkpoint", "there is no file checkpoint.3.solid"},
+    {"any_version", "version", "it was not refused"},
+    {"agreeable_box", "box", "it was not refused"},
+    {"agreeable_density", "density", "it was not refused"},
+    {"impatient", "slow_start", "no answer from fluid rank 0 for 1 s"},
+    {"impatient", "slow_loads", "no answer from fluid rank 0 for 1 s"},
+    {"too_patient", "silence", "it still waits after 8 s"},
+    {"not_a_number_is_zero", "fail", "it went on with a load that is not finite"},
+    {"deaf", "fault", "does not say farewell within 6 s after a fault"},
+    {"no_farewell", "end", "does not say farewell within 6 s after its last states"},
+    {"hasty_end", "end_late", "it ended before it could be judged"},
+    {"stubborn", "end_refused", "does not say farewell within 6 s after a refusal"},
+    {"fault_is_farewell", "end_fault", "it does not end within 8 s"},
+    {"deaf", "end_left", "does not say farewell within 6 s after the fluid's own"},
+};
+
+// All at once: they wait most of the time.
+TEST(Judge, FindsEverySin) {
+  std::vector<std::future<test::JobResult>> jobs;
+  for (const Sin& sin : kSins)
+    jobs.push_back(std::async(std::launch::async, [&sin] {
+      const test::TemporaryFolder folder;
+      return test::run(kJudge + sin.check + " -- " + kPython +
+                           BPLBM_SOURCE_DIR "/tests/support/bad_engine.py " + sin.name,
+                       folder.path(), 60.0);
+    }));
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    SCOPED_TRACE(std::string(kSins[i].name) + " before " + kSins[i].check);
+    test::expect_end(jobs[i].get(), 60.0 * BPLBM_PATIENCE, 1,
+                     {std::string(kSins[i].check), " NO ", "wrong: ", kSins[i].wrong});
   }
-  return all;
 }
-INSTANTIATE_TEST_SUITE_P(All, EngineTest, testing::ValuesIn(checks()), [](const auto& info) {
-  return std::string(info.param.engine) + "_" + info.param.name;
-});
+
+TEST(Judge, AnswersMistakesOfItsCommandLine) {
+  const test::TemporaryFolder folder;
+  const auto run = [&](const std::string& words) {
+    return test::run(kJudge + words, folder.path(), 20.0);
+  };
+  test::expect_end(run("--help"), 20.0, 0, {"bplbm-conformance [CHECK…] -- ENGINE…", "end_late"});
+  test::expect_end(run("move"), 20.0, 2, {"which engine?"});
+  test::expect_end(run("moves -- true"), 20.0, 2, {"no check is called 'moves'"});
+  test::expect_end(run("stop --launcher no_mpirun -- true"), 20.0, 1, {"no_mpirun not found"});
+  test::expect_end(run("stop --timeout 2 -- sleep 60"), 20.0, 1, {"does not end within 2 s"});
+  test::expect_end(run("stop -- true"), 20.0, 1, {"0 of 1 checks passed"});
+}
 
 // As FixTest has it for LIGGGHTS: deleting the first disc gives its id to the second.
 TEST(LammpsEngine, AnIdThatPassesToAnotherParticleGetsAnotherEpoch) {
@@ -130,13 +209,19 @@ TEST_P(SameScene, WithAnyEngineTheDiscFallsAlike) {
   std::vector<std::vector<std::array<double, 2>>> tracks;
   const test::TemporaryFolder folder;
   folder.write("overlay.toml", "[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.2\n");
-  for (const std::string engine : {"liggghts", "lammps", "reference", "python"}) {
+  for (const std::string engine : {"liggghts", "lammps", "reference", "python", "yade"}) {
+    if (engine == "yade" && (!installed(engine) || scene.ends_with("disc_migration")))
+      continue;  // its boxes are periodic along all axes or none
     const auto job = test::run(
-        test::mpirun(
-            {test::kLbm + " " + scene + "/scene.toml overlay.toml --progress none --out " + engine},
-            {command_for(scene, engine)}),
+        test::mpirun({test::kLbm + " " + scene + "/scene.toml overlay.toml --progress none --out " +
+                      engine + " --record " + engine + ".h5"},
+                     {command_for(scene, engine)}),
         folder.path(), 60.0);
     ASSERT_EQ(job.exit_code, 0) << engine << job.output;
+    const auto diff = test::run(
+        test::kBin + "/trace diff --physics --tolerance 1e-6 liggghts.h5 " + engine + ".h5",
+        folder.path(), 20.0);
+    EXPECT_EQ(diff.exit_code, 0) << engine << diff.output;
     tracks.push_back(track(test::read_file(folder.path() + "/" + engine + "/probes.csv")));
   }
   double fastest = 0.0;
@@ -153,9 +238,31 @@ TEST_P(SameScene, WithAnyEngineTheDiscFallsAlike) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SameScene, testing::Values("settling_disc", "disc_migration"),
                          [](const auto& info) { return std::string(info.param); });
 
+// What was recorded with one engine is played to the others: none needs the fluid to be compared.
+TEST(Recording, OfOneEngineIsFollowedByEveryOther) {
+  const std::string scene = BPLBM_SOURCE_DIR "/cases/settling_disc";
+  const test::TemporaryFolder folder;
+  folder.write("overlay.toml", "[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.1\n");
+  const std::string lbm =
+      test::kLbm + " " + scene + "/scene.toml overlay.toml --progress none --out out --record a.h5";
+  const auto recorded =
+      test::run(test::mpirun({lbm}, {command_for(scene, "python")}), folder.path(), 60.0);
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.output;
+  for (const std::string engine : {"liggghts", "lammps", "reference", "python", "yade"}) {
+    if (!installed(engine)) continue;
+    const auto job =
+        test::run(test::mpirun({test::kReplay + " --as fluid --physics --tolerance 1e-9 a.h5"},
+                               {command_for(scene, engine)}),
+                  folder.path(), 60.0);
+    EXPECT_EQ(job.exit_code, 0) << engine << job.output;
+    EXPECT_NE(job.output.find("replay | states | "), std::string::npos) << engine << job.output;
+  }
+}
+
 class EngineRestart : public testing::TestWithParam<const char*> {
  protected:
-  EngineRestart() {
+  void SetUp() override {
+    if (!installed(GetParam())) GTEST_SKIP() << GetParam() << " is not installed";
     folder_.write("overlay.toml",
                   "[particles]\nstart = [[0.01, 0.005]]\n[numerics]\ncells_per_diameter = 10\n"
                   "[run]\nend_time = 0.3\ncheckpoint_every = 0.1\n");
@@ -210,7 +317,7 @@ TEST_P(EngineRestart, AFullDiskOfTheSolidLeavesTheCheckpointBefore) {
             test::read_file(folder_.path() + "/whole/probes.csv"));
 }
 INSTANTIATE_TEST_SUITE_P(All, EngineRestart,
-                         testing::Values("liggghts", "lammps", "reference", "python"),
+                         testing::Values("liggghts", "lammps", "reference", "python", "yade"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -227,20 +227,20 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Damage, FewerLoadsThanParticles) {
   const test::TemporaryFolder folder;
-  expect_end(
-      test::run(mpirun({kPeer + " fluid fewer"},
-                       {kLiggghts + " -in " BPLBM_SOURCE_DIR
-                                    "/tests/support/conformance.liggghts -screen none "
-                                    "-var boundary_x p -var boundary_y p -var x_lo 0 -var "
-                                    "x_hi 1 -var y_lo 0 -var y_hi 1 -var z_lo -0.5 -var z_hi "
-                                    "0.5 -var particles 1 -var particle1_x 0.5 -var "
-                                    "particle1_y 0.5 -var particle1_vx 0 -var particle1_vy 0 "
-                                    "-var particle1_interval 0 "
-                                    "-var diameter_max 0.1 -var density_max 1000 -var "
-                                    "contact_stiffness 1e5 -var solid_step 1e-3 -var substeps "
-                                    "10 -var solid_steps_total 100"}),
-                folder.path(), 30.0),
-      1, {"liggghts | error | fluid rank 0 answered 0 loads for 1 particles"});
+  expect_end(test::run(mpirun({kPeer + " fluid fewer"},
+                              {kLiggghts +
+                               " -in " BPLBM_SOURCE_DIR
+                               "/tools/engines/conformance/in.liggghts -screen none "
+                               "-var boundary_x p -var boundary_y p -var x_lo 0 -var "
+                               "x_hi 1 -var y_lo 0 -var y_hi 1 -var z_lo -0.5 -var z_hi "
+                               "0.5 -var particles 1 -var particle1_x 0.5 -var "
+                               "particle1_y 0.5 -var particle1_vx 0 -var particle1_vy 0 "
+                               "-var particle1_interval 0 -var particle1_until -1 -var depth 1 "
+                               "-var diameter_max 0.1 -var density_max 1000 -var "
+                               "contact_stiffness 1e5 -var solid_step 1e-3 -var substeps "
+                               "10 -var solid_steps_total 100"}),
+                       folder.path(), 30.0),
+             1, {"liggghts | error | fluid rank 0 answered 0 loads for 1 particles"});
 }
 
 TEST(Slow, APartnerThatTakesItsTimeIsWaitedFor) {
@@ -363,10 +363,11 @@ TEST(Launch, TheSolidTwice) {
 
 TEST(Launch, TheSystemsStockLiggghts) {
   SettlingDisc scene;
+  scene.change_scene("timeout = 60.0", "timeout = 60.0\nconnect_timeout = 3.0");
   expect_end(test::run(mpirun({kLbm}, {"/usr/bin/liggghts -in in.liggghts"}), scene.folder(), 30.0),
              1,
-             {"lbm | error | rank(s) 1 of this MPI job did not say",
-              "the system's stock liggghts cannot couple"});
+             {"lbm | error | rank(s) 1 of this MPI job did not say within 3 s",
+              "the system's stock liggghts cannot couple", "coupling.connect_timeout = SECONDS"});
 }
 
 TEST(Launch, AStranger) {
@@ -376,9 +377,23 @@ TEST(Launch, AStranger) {
                "#include <mpi.h>\n#include <unistd.h>\nint main(int c, char** v) { MPI_Init(&c, "
                "&v); sleep(100); }\n");
   ASSERT_EQ(test::run("mpicc stranger.c -o stranger", folder.path(), 60.0).exit_code, 0);
-  expect_end(test::run(mpirun({folder.path() + "/stranger"}, {kLiggghts + " -screen none"}),
+  expect_end(test::run("export BPLBM_CONNECT_TIMEOUT=3; " +
+                           mpirun({folder.path() + "/stranger"}, {kLiggghts + " -screen none"}),
                        scene.folder(), 30.0),
              1, {"liggghts | error | rank(s) 0 of this MPI job did not say"});
+}
+
+// Two solid ranks that start one after the other: whoever is there waits for the slower one.
+TEST(Launch, ASlowEngineIsWaitedForAsLongAsTheSceneSays) {
+  SettlingDisc scene;
+  const std::string slow =
+      "sh -c 'sleep $((4 * OMPI_COMM_WORLD_RANK - 3)); exec " + test::kBin + "/c_engine'";
+  scene.change_scene("timeout = 60.0", "timeout = 60.0\nconnect_timeout = 2.0");
+  expect_end(test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0), 1,
+             {"lbm | error | rank(s) 2 of this MPI job did not say within 2 s"});
+  scene.change_scene("connect_timeout = 2.0", "connect_timeout = 20.0");
+  const auto job = test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0);
+  EXPECT_EQ(job.exit_code, 0) << job.output;
 }
 
 /// Whatever the screen is: what LIGGGHTS says of its end reaches the fluid, without a source file.

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "protocol/trace_compare.h"
+#include "protocol/transport/trace_compare.h"
 #include "tests/support/coupled_job.h"
 
 namespace {
@@ -208,13 +208,26 @@ TEST(SettlingDiscCoupled, TheLiteralCommandOfASceneFolderWorks) {
 }
 
 TEST(SettlingDiscCoupled, VariablesOfTheCommandLineComeFirst) {
+  SettlingDisc scene;  // the fluid offers x = 0.01 m
+  expect_success(scene.run("--record own.h5", 1, 60.0, "-screen none -var particle1_x 0.009"));
+  expect_success(scene.run("--force --record offered.h5"));
+  EXPECT_EQ(recorded(scene, "own.h5").front().states[0].x[0], 0.009);
+  EXPECT_EQ(recorded(scene, "offered.h5").front().states[0].x[0], 0.01);
+}
+
+TEST(SettlingDiscCoupled, TheVariablesThatCheckPrintsAreThoseOfARun) {
   SettlingDisc scene;
   const auto line =
       test::run(test::kLbm + " check --liggghts-vars scene.toml", scene.folder(), 20.0);
   ASSERT_EQ(line.exit_code, 0) << line.output;
   std::string variables = line.output;
   variables.erase(variables.find_last_not_of('\n') + 1);
-  expect_success(scene.run("", 1, 60.0, "-screen none " + variables));
+  EXPECT_NE(variables.find("-var particle1_x 0.01 "), std::string::npos) << variables;
+  expect_success(scene.run("--record given.h5", 1, 60.0, "-screen none " + variables));
+  expect_success(scene.run("--force --record offered.h5"));
+  const auto given = recorded(scene, "given.h5"), offered = recorded(scene, "offered.h5");
+  ASSERT_EQ(given.size(), offered.size());
+  EXPECT_EQ(given.back().states[0].x, offered.back().states[0].x);
 }
 
 }  // namespace

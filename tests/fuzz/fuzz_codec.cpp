@@ -2,8 +2,8 @@
 /// Any bytes as a frame: either a BadMessage, or a message that is written back to the same bytes.
 #include <cstring>
 
-#include "protocol/codec.h"
-#include "protocol/errors.h"
+#include "protocol/wire/codec.h"
+#include "protocol/wire/errors.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <string>
 
-#include "protocol/errors.h"
-#include "protocol/trace_compare.h"
+#include "protocol/transport/trace_compare.h"
+#include "protocol/wire/errors.h"
 
 namespace {
 

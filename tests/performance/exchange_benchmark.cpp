@@ -7,9 +7,9 @@
 #include <chrono>
 #include <random>
 
-#include "protocol/mpi_channel.h"
-#include "protocol/routing.h"
-#include "protocol/session.h"
+#include "protocol/transport/mpi_channel.h"
+#include "protocol/wire/routing.h"
+#include "protocol/wire/session.h"
 
 namespace {
 

@@ -15,7 +15,7 @@
 
 #include "lbm_solver/immersed/boundary_trace.h"
 #include "lbm_solver/solver/fluid.h"
-#include "protocol/command_line.h"
+#include "protocol/program/command_line.h"
 #include "tests/performance/aos_baseline.h"
 
 namespace {

@@ -24,7 +24,7 @@
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/immersed/solid_fraction.h"
 #include "lbm_solver/solver/fluid.h"
-#include "protocol/command_line.h"
+#include "protocol/program/command_line.h"
 #include "tests/performance/array_table.h"
 #include "tests/reference/disc_area.h"
 #include "tests/support/array_references.h"

@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "lbm_solver/solver/plan.h"
-#include "protocol/command_line.h"
+#include "protocol/program/command_line.h"
 #include "tests/support/free_disc.h"
 #include "tests/support/scheme_fluid.h"
 

@@ -29,9 +29,9 @@
 #include <limits>
 #include <numbers>
 
-#include "protocol/mpi_channel.h"
-#include "protocol/program.h"
-#include "protocol/session.h"
+#include "protocol/program/program.h"
+#include "protocol/transport/mpi_channel.h"
+#include "protocol/wire/session.h"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "protocol/mpi_calls.h"
-#include "protocol/mpi_channel.h"
-#include "protocol/program.h"
-#include "protocol/watch.h"
+#include "protocol/program/mpi_calls.h"
+#include "protocol/program/program.h"
+#include "protocol/program/watch.h"
+#include "protocol/transport/mpi_channel.h"
 
 #pragma GCC diagnostic ignored "-Wdeprecated-declarations"
 

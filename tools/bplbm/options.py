@@ -3,6 +3,8 @@
 import argparse
 import math
 import pathlib
+import shlex
+import shutil
 import sys
 
 from bplbm.project import home, tool
@@ -10,6 +12,7 @@ from bplbm.scenes import Unknown, find, scenes
 
 BAD_INPUT = 2
 MOST_THREADS = 1024
+ENGINES = ("liggghts", "lammps", "yade", "reference", "python", "c", "fortran")
 
 
 def fail(text, code=BAD_INPUT):
@@ -58,8 +61,10 @@ def parser():
     p.add_argument("--fluid-ranks", type=whole, default=1, metavar="N")
     p.add_argument("--solid-ranks", type=whole, default=1, metavar="M")
     p.add_argument("--threads", type=whole, default=1, metavar="T", help=f"of the fluid; at most {MOST_THREADS}")
-    p.add_argument("--engine", default="liggghts", choices=["liggghts", "lammps", "reference", "python"],
-                   help="who moves the particles; the last two suit free discs")
+    p.add_argument("--engine", choices=ENGINES, help="who moves the particles (default: liggghts); yade suits particles of one "
+                   "size without a script, reference, python, c and fortran free discs")
+    p.add_argument("--engine-command", metavar="'COMMAND'", help="any other program that does; in its words {folder} is the "
+                   "scene's folder and {out} the output folder")
     p.add_argument("--until", type=seconds, metavar="SECONDS", help="stop at this physical time")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
     p.add_argument("--restart", action="store_const", const="checkpoint", help="go on from the checkpoint in --out")
@@ -105,6 +110,7 @@ def arguments(words):
     for overlay in args.overlay:
         if not pathlib.Path(overlay).is_file():
             fail(f"--overlay {overlay}: there is no such file")
+    check_engine(args)
     if scene.is_solid_alone:
         check_alone(args)
     refuse_clashes(scene, options)
@@ -112,10 +118,24 @@ def arguments(words):
     return args
 
 
+def check_engine(args):
+    """--engine or --engine-command, whose words replace it; the default where neither is given."""
+    if args.engine_command is not None:
+        if args.engine:
+            fail("--engine names one of our engines and --engine-command is any other program; give one of them")
+        try:
+            args.engine_command = shlex.split(args.engine_command)
+        except ValueError as error:
+            fail(f"--engine-command: {error}; quote it as a whole, e.g. 'python3 my_engine.py'")
+        if not args.engine_command or shutil.which(args.engine_command[0]) is None:
+            fail(f"--engine-command: there is no program '{(args.engine_command or [''])[0]}'")
+    args.engine = args.engine or "liggghts"
+
+
 def check_alone(args):
     """LIGGGHTS alone takes no option of the fluid or of the exchange."""
     given = {"--fluid-ranks": args.fluid_ranks > 1, "--threads": args.threads > 1, "--record": args.record,
-             "--restart": args.restart, "--engine": args.engine != "liggghts"}
+             "--restart": args.restart, "--engine": args.engine != "liggghts", "--engine-command": args.engine_command}
     for option, wrong in given.items():
         if wrong:
             fail(f"{args.scene.name} has no fluid, LIGGGHTS runs alone: leave {option} out")

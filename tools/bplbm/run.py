@@ -42,10 +42,13 @@ def solid_command(args, out):
     """The program that moves the particles; nothing for a fluid alone."""
     if not args.scene.is_coupled:
         return []
-    if args.engine == "reference":
-        return [str(BIN / "reference_engine")]
-    if args.engine == "python":
-        return ["/usr/bin/python3", str(TOOLS / "engines" / "python" / "engine.py")]
+    if args.engine_command:
+        places = {"{folder}": str(args.scene.folder), "{out}": str(out)}
+        return [re.sub(r"\{folder\}|\{out\}", lambda found: places[found[0]], word) for word in args.engine_command]
+    if args.engine in ("reference", "c", "fortran"):
+        return [str(BIN / f"{args.engine}_engine")]
+    if args.engine in ("python", "yade"):
+        return ["/usr/bin/python3", str(TOOLS / "engines" / args.engine / "engine.py")]
     script = args.scene.script(args.engine)
     if not script.exists():
         fail(f"{args.scene.name} has no {script.name}; write one, or leave --engine out")

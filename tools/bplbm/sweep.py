@@ -96,7 +96,7 @@ def made_of(args, overlay):
     for path in sorted({*map(pathlib.Path, scene_files(args)), *folder.glob("*.liggghts"), *folder.glob("in.*"),
                         *folder.glob("plot.py")}):
         digest.update(path.read_bytes())
-    digest.update(repr((args.engine, args.until)).encode())
+    digest.update(repr((args.engine_command or args.engine, args.until)).encode())
     return digest.hexdigest()[:16]
 
 

@@ -11,7 +11,7 @@
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/restart.h"
 #include "lbm_solver/io/scene_reader.h"
-#include "protocol/solid_parts.h"
+#include "protocol/program/solid_parts.h"
 #include "tests/support/job.h"
 
 namespace {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 
 #include "lbm_solver/immersed/weight.h"
 #include "lbm_solver/solver/fluid.h"
@@ -60,6 +61,36 @@ TEST(CoverMap, SolidsThatShareACellAreOneThereAndAWallIsAWall) {
   EXPECT_EQ(cover.cell(24, 22).velocity.norm(), 0.0);
   EXPECT_EQ(cover.solid_fraction(24, 22), 1.0);
   EXPECT_NE(cover.cell(23, 22).cover, kWall);
+}
+
+TEST(CoverMap, ACellOfSeveralSolidsHasTheirFractionsAndTheirMeanVelocity) {
+  CoverMap cover(kDomain);
+  const auto discs = cluster();
+  cover.update(discs);
+  std::deque<CoverMap> alone;  // a map of each disc
+  for (const Body& disc : discs) alone.emplace_back(kDomain).update(std::vector<Body>{disc});
+  int of_two = 0, of_three = 0;
+  for (int y = 0; y < kDomain.ny; ++y)
+    for (int x = 0; x < kDomain.nx; ++x) {
+      int solids = 0;
+      double fractions = 0.0;
+      Vec3 velocity;
+      for (const CoverMap& map : alone) {
+        const double fraction = map.solid_fraction(x, y);
+        if (fraction == 0.0) continue;
+        ++solids;
+        fractions += fraction;
+        velocity += fraction * map.cell(x, y).velocity;
+      }
+      EXPECT_NEAR(cover.solid_fraction(x, y), std::min(1.0, fractions), 1e-15) << x << ' ' << y;
+      if (solids == 0) continue;
+      const Vec3 mean = velocity / fractions;
+      EXPECT_NEAR((cover.cell(x, y).velocity - mean).norm(), 0.0, 1e-15) << x << ' ' << y;
+      of_two += solids == 2;
+      of_three += solids == 3;
+    }
+  EXPECT_GT(of_two, 5);
+  EXPECT_GT(of_three, 0);
 }
 
 TEST(CoverMap, WhatWasThereBeforeLeavesNoTrace) {

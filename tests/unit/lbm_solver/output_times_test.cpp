@@ -10,7 +10,7 @@
 
 #include "lbm_solver/coupling/run.h"
 #include "lbm_solver/io/scene_reader.h"
-#include "protocol/hdf5_file.h"
+#include "protocol/transport/hdf5_file.h"
 #include "tests/support/job.h"
 
 namespace {

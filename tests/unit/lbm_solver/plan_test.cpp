@@ -28,8 +28,9 @@ TEST(Plan, ChoosesTheStepByMach) {
   EXPECT_EQ(p.domain.ny, 480);
   EXPECT_NEAR(p.lattice_speed, 10 * 0.06, 1e-3);
   EXPECT_NE(p.step_limit.find("Mach"), std::string::npos);
-  EXPECT_NEAR(p.kernel.parameters.tau, 0.5 + 3.0 * 1e-5 * p.units.dt / (1.25e-4 * 1.25e-4), 1e-12);
-  EXPECT_NEAR(p.interval() * static_cast<double>(p.intervals), 1.0, 1e-12);  // ends on time
+  EXPECT_EQ(p.intervals, 4800);                      // 1.25e-4 m / 0.6 m/s, for a second
+  EXPECT_NEAR(p.interval(), 1.0 / 4800.0, 1e-16);    // ends on time
+  EXPECT_NEAR(p.kernel.parameters.tau, 0.9, 1e-12);  // ν = 1e-5 m²/s is 2/15 cells² a step
   EXPECT_EQ(p.substeps, 12);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <gtest/gtest.h>
 
+#include <type_traits>
+
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "lbm_solver/solver/plan.h"
@@ -33,6 +35,8 @@ TEST_P(BadScene, IsNamedWithPlaceReasonAndRemedy) {
   } catch (const InputError& e) {
     const std::string text = e.what();
     EXPECT_EQ(e.exit_code(), 2);
+    static_assert(!std::is_base_of_v<protocol::ProtocolError, InputError>,
+                  "a mistake in a scene is no error of the exchange");
     EXPECT_NE(text.find("scene.toml"), std::string::npos) << text;
     EXPECT_NE(text.find("; "), std::string::npos) << "no remedy in: " << text;
     for (const auto& word : s.words) EXPECT_NE(text.find(word), std::string::npos) << text;

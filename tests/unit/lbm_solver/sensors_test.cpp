@@ -9,7 +9,7 @@
 #include "lbm_solver/io/scene_reader.h"
 #include "lbm_solver/solver/plane_flow.h"
 #include "lbm_solver/solver/side_loads.h"
-#include "protocol/hdf5_file.h"
+#include "protocol/transport/hdf5_file.h"
 #include "tests/support/job.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/agreement.h"
+#include "protocol/wire/agreement.h"
 
 #include <gtest/gtest.h>
 

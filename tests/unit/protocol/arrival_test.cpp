@@ -9,9 +9,9 @@
 #include <future>
 #include <random>
 
-#include "protocol/memory_channel.h"
-#include "protocol/overlap.h"
-#include "protocol/session.h"
+#include "protocol/transport/memory_channel.h"
+#include "protocol/wire/overlap.h"
+#include "protocol/wire/session.h"
 #include "tests/unit/protocol/samples.h"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "protocol/mpi_channel.h"
+#include "protocol/transport/mpi_channel.h"
 #include "tests/unit/protocol/conversation.h"
 
 int main(int argc, char** argv) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// The conversation over the in-process and the trace transport; tests/coupled carries it over MPI.
-#include "protocol/channel.h"
+#include "protocol/wire/channel.h"
 
 #include <gtest/gtest.h>
 
 #include <future>
 
-#include "protocol/memory_channel.h"
-#include "protocol/trace.h"
+#include "protocol/transport/memory_channel.h"
+#include "protocol/transport/trace.h"
 #include "tests/support/job.h"
 #include "tests/unit/protocol/conversation.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/checksum.h"
+#include "protocol/program/checksum.h"
 
 #include <gtest/gtest.h>
 

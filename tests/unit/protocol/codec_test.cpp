@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/codec.h"
+#include "protocol/wire/codec.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "protocol/errors.h"
+#include "protocol/wire/errors.h"
 #include "tests/unit/protocol/samples.h"
 
 namespace {

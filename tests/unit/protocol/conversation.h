@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "protocol/channel.h"
+#include "protocol/wire/channel.h"
 #include "tests/unit/protocol/samples.h"
 
 namespace test {

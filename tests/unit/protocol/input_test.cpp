@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
-#include "protocol/input_file.h"
-#include "protocol/numbers.h"
+#include "protocol/program/input_file.h"
+#include "protocol/wire/numbers.h"
 #include "tests/support/job.h"
 
 namespace {
@@ -49,7 +49,7 @@ TEST(Environment, ATimeIsANumberOfSeconds) {
     try {
       seconds_from_environment(name, 0.6);
       ADD_FAILURE() << "accepted: " << text;
-    } catch (const ProtocolError& e) {
+    } catch (const ProgramError& e) {
       EXPECT_EQ(e.exit_code(), kBadInput);
       EXPECT_NE(std::string(e.what()).find(name), std::string::npos);
     }

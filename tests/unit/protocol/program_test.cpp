@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/program.h"
+#include "protocol/program/program.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@ namespace {
 using namespace protocol;
 
 TEST(DeadlineDeathTest, SaysTheReasonAndEndsWithItsCode) {
-  const ProtocolError error("the box is on fire", kBadInput);
+  const ProgramError error("the box is on fire", kBadInput);
   EXPECT_EXIT(
       {
         const Deadline deadline(error, "lbm", 1);
@@ -19,7 +19,7 @@ TEST(DeadlineDeathTest, SaysTheReasonAndEndsWithItsCode) {
 }
 
 TEST(Deadline, IsOffOnceTheWorkIsDone) {
-  { const Deadline deadline(ProtocolError("nothing"), "lbm", 1); }
+  { const Deadline deadline(ProgramError("nothing"), "lbm", 1); }
   EXPECT_EQ(sleep(2), 0U);  // no signal comes
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/routing.h"
+#include "protocol/wire/routing.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <random>
 
-#include "protocol/codec.h"
+#include "protocol/wire/codec.h"
 
 namespace test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/session.h"
+#include "protocol/wire/session.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <future>
 #include <limits>
 
-#include "protocol/memory_channel.h"
+#include "protocol/transport/memory_channel.h"
 #include "tests/unit/protocol/samples.h"
 
 namespace {
@@ -299,6 +299,35 @@ TEST(Session, LoadsThatAreNotFiniteNeverReachTheSolid) {
                    },
                    [](SolidSession& s, int) { send(s, 0, {state(1, 0.01)}); }),
                ProtocolError);
+}
+
+/// What a fluid is told that answers two particles with such loads.
+std::string said_of(const std::vector<Load>& loads) {
+  std::string said;
+  EXPECT_THROW(couple(
+                   1, 1,
+                   [&](FluidSession& f, int) {
+                     f.receive();
+                     try {
+                       f.answer(loads);
+                     } catch (const ProtocolError& error) {
+                       said = error.what();
+                       throw;
+                     }
+                   },
+                   [](SolidSession& s, int) {
+                     send(s, 0, {state(1, 0.01), state(2, 0.015)});
+                   }),
+               ProtocolError);
+  return said;
+}
+
+TEST(Session, AnAnswerMustFitTheParticles) {
+  EXPECT_EQ(said_of({{1, {}, {}}}), "the fluid computed 1 loads for 2 particles at interval 0");
+  EXPECT_EQ(said_of({{1, {}, {}}, {2, {}, {}}, {3, {}, {}}}),
+            "the fluid computed 3 loads for 2 particles at interval 0");
+  EXPECT_EQ(said_of({{2, {}, {}}, {1, {}, {}}}),
+            "the fluid computed a load of particle 2 in place of 1 at interval 0");
 }
 
 TEST(Session, ASilentPartnerIsNamedWithTheIntervalWaitedFor) {

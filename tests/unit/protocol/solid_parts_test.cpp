@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/solid_parts.h"
+#include "protocol/program/solid_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "protocol/errors.h"
-#include "protocol/file_catcher.h"
+#include "protocol/program/file_catcher.h"
+#include "protocol/wire/errors.h"
 #include "tests/support/job.h"
 
 namespace {
@@ -67,7 +67,7 @@ TEST_F(SolidPartsTest, SaysWhichFileCannotBeWritten) {
   try {
     write(parts, 3);
     FAIL() << "no error";
-  } catch (const ProtocolError& error) {
+  } catch (const ProgramError& error) {
     EXPECT_NE(std::string(error.what()).find("nowhere/checkpoint.3.solid cannot be written"),
               std::string::npos)
         << error.what();

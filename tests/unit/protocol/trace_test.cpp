@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/trace.h"
+#include "protocol/transport/trace.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "protocol/trace_compare.h"
+#include "protocol/transport/trace_compare.h"
 #include "tests/support/job.h"
 #include "tests/unit/protocol/samples.h"
 
@@ -88,6 +88,30 @@ TEST_F(TraceTest, ComparisonNamesTheFirstDifference) {
   EXPECT_EQ(other.first()->field, "force[1]");
   EXPECT_NEAR(other.largest(), 1e-9, 2e-9);  // relative to a force of order one
   EXPECT_GT(other.largest(), 0.0);
+}
+
+TEST_F(TraceTest, PhysicsMeasuresPlacesInRadiiAndLoadsInWeights) {
+  IntervalRecord record;
+  record.states = {{1, {0.2, 0.999, 0.0}, {3.0, 0.0, 0.0}, {}}};
+  record.shapes = {{1, 0.01, 2.0, 1e-4, 1}};
+  record.loads = {{1, {5.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}};
+  Hello fluid;
+  fluid.box_hi = {1.0, 1.0, 1.0};
+  fluid.periodic = {0, 1, 0};
+  fluid.gravity = {0.0, -10.0, 0.0};
+  auto other = record;
+  other.states[0].x = {0.2002, -0.001, 0.0};  // a fiftieth of a radius; y is its periodic image
+  other.loads[0].force[0] = 5.2;              // a hundredth of the weight
+  TraceComparison compare(physical_scales(std::vector{record}, fluid));
+  compare.states(0, record.states, other.states);
+  EXPECT_NEAR(compare.largest(), 0.02, 1e-12);
+  compare.loads(0, record.loads, other.loads);
+  EXPECT_NEAR(compare.largest(), 0.02, 1e-12);
+  other.loads[0].force[0] = 6.0;
+  compare.loads(0, record.loads, other.loads);
+  EXPECT_NEAR(compare.largest(), 0.05, 1e-12);
+  EXPECT_NE(compare.text().find("0.02 radii in place"), std::string::npos) << compare.text();
+  EXPECT_NE(compare.text().find("0.05 weights in force"), std::string::npos) << compare.text();
 }
 
 TEST_F(TraceTest, AMissingParticleIsAnInfiniteDifference) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "protocol/walls.h"
+#include "protocol/wire/walls.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// The watch between processes that are no MPI job: a child plays one rank, the other is stopped.
-#include "protocol/watch.h"
+#include "protocol/program/watch.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -103,14 +103,33 @@ class Launch(unittest.TestCase):
         self.assertEqual(args.own, [("start", "5")])
 
     def test_the_command_names_both_programs_by_absolute_path(self):
-        args = mock.Mock(scene=find("settling_disc"), overlay=[], set="fine", variant="d10", own=[], engine="liggghts", threads=2, until=None,
-                         record=None, restart=False, accept=[], fluid_ranks=1, solid_ranks=3)
+        args = mock.Mock(scene=find("settling_disc"), overlay=[], set="fine", variant="d10", own=[], engine="liggghts", engine_command=None,
+                         threads=2, until=None, record=None, restart=False, accept=[], fluid_ranks=1, solid_ranks=3)
         line = run.command(args, pathlib.Path("/somewhere"))
         split = line.index(":")
         self.assertTrue(line[line.index("1") + 1].endswith("/bin/lbm"))
         self.assertTrue(line[split + 3].startswith("/") and line[split + 3].endswith("/bin/liggghts"))
         self.assertEqual(line[split + 2], "3")
         self.assertTrue(any(word.endswith("fine.toml") for word in line))
+
+    def solid(self, *words):
+        args = arguments(["settling_disc", *words])
+        return run.solid_command(args, pathlib.Path("/somewhere"))
+
+    def test_each_engine_and_any_command_can_be_the_solid(self):
+        self.assertTrue(self.solid()[0].endswith("/bin/liggghts"))
+        self.assertTrue(self.solid("--engine", "lammps")[0].endswith("/bin/lammps_engine"))
+        self.assertTrue(self.solid("--engine", "yade")[1].endswith("/engines/yade/engine.py"))
+        self.assertEqual(self.solid("--engine-command", "python3 'my engine.py' {folder}/in.{x} {out}/log"),
+                         ["python3", "my engine.py", f"{ROOT}/cases/settling_disc/in.{{x}}", "/somewhere/log"])
+
+    def test_a_command_that_cannot_be_started_says_why(self):
+        for words, said in ((["--engine-command", "python3 'a"], "No closing quotation"), (["--engine-command", ""], "no program"),
+                            (["--engine-command", "no_such_engine"], "no program 'no_such_engine'"),
+                            (["--engine-command", "true", "--engine", "yade"], "give one of them")):
+            code, text = self.run_main("settling_disc", *words)
+            self.assertEqual(code, 2)
+            self.assertIn(said, text)
 
 
 class SolidAlone(unittest.TestCase):
@@ -159,6 +178,7 @@ class SolidAlone(unittest.TestCase):
 
     def test_options_of_the_fluid_are_refused(self):
         for words in (["--fluid-ranks", "2"], ["--threads", "2"], ["--record", "a.h5"], ["--engine", "python"],
+                      ["--engine-command", "true"],
                       ["--restart"]):
             code, text = self.run_main("bonded_compression", *words)
             self.assertEqual(code, 2)

@@ -13,10 +13,10 @@ EDGES = ROOT / "tools" / "architecture.txt"
 
 
 def room(path):
-    """protocol, a room of lbm_solver or liggghts_coupling, an engine, or None."""
+    """A room of protocol, lbm_solver or liggghts_coupling, an engine, or None."""
     parts = pathlib.PurePosixPath(path).parts
-    if parts[0] == "protocol":
-        return "protocol"
+    if parts[0] == "protocol" and len(parts) > 2:
+        return "protocol/replay, trace" if path.endswith("_main.cpp") else f"protocol/{parts[1]}"
     if parts[0] == "lbm_solver":
         if parts[1] in ("collision", "turbulence"):  # operators and eddy viscosity know each other
             return "lbm_solver/collision, turbulence"
@@ -64,7 +64,7 @@ def draw(pairs):
         row = [r for r in rooms if level(r) == d]
         for i, r in enumerate(row):
             place[r] = ((i - (len(row) - 1) / 2) * 2.6, d)
-    figure, axes = plt.subplots(figsize=(8.6, 7.0))
+    figure, axes = plt.subplots(figsize=(11.5, 7.0))
     colors = {"protocol": "#d8e8d0", "lbm_solver": "#dfe8f5", "liggghts_coupling": "#f5e4d0", "tools": "#eee"}
     for a, b in reduced(pairs):
         (x0, y0), (x1, y1) = place[a], place[b]

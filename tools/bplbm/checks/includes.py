@@ -20,10 +20,13 @@ LBM = {
     "coupling": {"base", "lattice", "field", "collision", "boundary", "immersed", "solver", "io"},
     "main.cpp": {"base", "lattice", "field", "collision", "immersed", "solver", "io", "coupling"},
 }
+# The same of protocol/; its main programs may use all of them.
+PROTOCOL = {"wire": set(), "program": {"wire"}, "transport": {"wire", "program"},
+            "solid": {"wire", "program", "transport"}}
 # Library header (prefix) -> files that may use it.
 ONLY = {
-    "mpi.h": r"protocol/(mpi_channel|mpi_calls|program).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
-    "hdf5": r"protocol/(hdf5_file|trace).*|lbm_solver/io/field_writer\.cpp",
+    "mpi.h": r"protocol/(transport/mpi_channel|program/(mpi_calls|program)|solid/).*|lbm_solver/field/decomposition\.h|liggghts_coupling/.*",
+    "hdf5": r"protocol/transport/(hdf5_file|trace).*|lbm_solver/io/field_writer\.cpp",
     "lammps": r"liggghts_coupling/(host|bond)/.*",
     "atom.h": r"liggghts_coupling/(host|bond)/.*",
     "fix.h": r"liggghts_coupling/(host|bond)/.*",
@@ -42,6 +45,10 @@ def complaints():
             owner = header.split("/")[0]
             if top == "protocol" and owner in ("lbm_solver", "liggghts_coupling"):
                 yield f"{name} includes {header}: the protocol knows neither program"
+            if top == "protocol" and owner == "protocol" and not name.endswith("_main.cpp"):
+                room, other = name.split("/")[1], header.split("/")[1]
+                if other != room and other not in PROTOCOL[room]:
+                    yield f"{name} includes {header}: {room} may use {sorted(PROTOCOL[room]) or 'nothing'}"
             if {top, owner} == {"lbm_solver", "liggghts_coupling"}:
                 yield f"{name} includes {header}: the two programs never see each other"
             if top == "lbm_solver" and owner == "lbm_solver":

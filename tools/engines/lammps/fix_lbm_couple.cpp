@@ -21,8 +21,8 @@
 #include <string>
 #include <utility>
 
-#include "protocol/file_catcher.h"
-#include "protocol/numbers.h"
+#include "protocol/program/file_catcher.h"
+#include "protocol/wire/numbers.h"
 
 namespace engine {
 
@@ -96,7 +96,7 @@ void FixLbmCouple::setup_pre_exchange() {
     const LAMMPS_NS::Fix& fix = *modify->fix[i];
     if (!std::string(fix.style).starts_with("rigid")) continue;
     if (const auto pair = find_overlap(balls(fix.groupbit), box, protocol::Depth::Surface))
-      throw protocol::ProtocolError(
+      throw protocol::ProgramError(
           std::string("fix ") + fix.id + " " + fix.style +
               " joins spheres that overlap: " + describe(*pair) +
               ". Such clumps cannot couple yet: the fluid would count buoyancy and the fluid "
@@ -104,10 +104,10 @@ void FixLbmCouple::setup_pre_exchange() {
           protocol::kBadInput);
   }
   if (const auto pair = find_overlap(balls(groupbit), box))
-    throw protocol::ProtocolError(describe(*pair) +
-                                      "; the centre of one lies in the other: "
-                                      "correct their places or diameters",
-                                  protocol::kBadInput);
+    throw protocol::ProgramError(describe(*pair) +
+                                     "; the centre of one lies in the other: "
+                                     "correct their places or diameters",
+                                 protocol::kBadInput);
 }
 
 protocol::Hello FixLbmCouple::hello() const {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "protocol/overlap.h"
-#include "protocol/session.h"
-#include "protocol/solid_parts.h"
+#include "protocol/program/solid_parts.h"
+#include "protocol/wire/overlap.h"
+#include "protocol/wire/session.h"
 
 namespace engine {
 

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "protocol/mpi_calls.h"
-#include "protocol/mpi_channel.h"
-#include "protocol/program.h"
-#include "protocol/watch.h"
+#include "protocol/program/mpi_calls.h"
+#include "protocol/program/program.h"
+#include "protocol/program/watch.h"
+#include "protocol/transport/mpi_channel.h"
 
 namespace {
 
@@ -39,7 +39,7 @@ void run(std::vector<std::string> arguments, protocol::SolidSession& session, MP
     if (arguments[i] == "-log") log_file = arguments[i + 1];
   }
   if (!std::filesystem::is_regular_file(script))
-    throw protocol::ProtocolError(script + ": no such script; give -in FILE", protocol::kBadInput);
+    throw protocol::ProgramError(script + ": no such script; give -in FILE", protocol::kBadInput);
   const auto folder = std::filesystem::path(script).parent_path();
   arguments.insert(arguments.end(),
                    {"-var", "scene_folder", folder.empty() ? "." : folder.string()});
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
   try {
     world = protocol::connect(protocol::Role::Solid);
     if (!world.coupled())
-      throw protocol::ProtocolError(
+      throw protocol::ProgramError(
           "no fluid program was started beside it; start: mpirun -np 1 lbm scene.toml : -np 1 "
           "lammps_engine -in FILE",
           protocol::kBadInput);

@@ -12,13 +12,13 @@
 #include <map>
 #include <numbers>
 
-#include "protocol/codec.h"
-#include "protocol/mpi_channel.h"
-#include "protocol/numbers.h"
-#include "protocol/program.h"
-#include "protocol/session.h"
-#include "protocol/solid_parts.h"
-#include "protocol/watch.h"
+#include "protocol/program/program.h"
+#include "protocol/program/solid_parts.h"
+#include "protocol/program/watch.h"
+#include "protocol/transport/mpi_channel.h"
+#include "protocol/wire/codec.h"
+#include "protocol/wire/numbers.h"
+#include "protocol/wire/session.h"
 
 namespace {
 
@@ -33,13 +33,13 @@ class Offer {
   double number(const std::string& name) const {
     const auto found = values_.find(name);
     if (found == values_.end())
-      throw ProtocolError(fmt::format("the fluid offers no variable '{}'", name), kBadInput);
+      throw ProgramError(fmt::format("the fluid offers no variable '{}'", name), kBadInput);
     const auto value = to_number<double>(found->second);
     if (!value)
-      throw ProtocolError(fmt::format("the fluid's variable '{}' = '{}' is no number; correct "
-                                      "[particles.variables] of the scene",
-                                      name, found->second),
-                          kBadInput);
+      throw ProgramError(fmt::format("the fluid's variable '{}' = '{}' is no number; correct "
+                                     "[particles.variables] of the scene",
+                                     name, found->second),
+                         kBadInput);
     return *value;
   }
   double number_or(const std::string& name, double otherwise) const {
@@ -82,19 +82,22 @@ class Discs {
       insert(0);
   }
 
-  /// Puts the particles of an interval into the box.
+  /// Takes particles out of the box and puts others into it, as the scene says for an interval.
   void insert(int interval) {
     for (int i = 1;; ++i) {
       const std::string p = fmt::format("particle{}_", i);
       if (offer_.number_or(p + "x", NAN) != offer_.number_or(p + "x", NAN)) return;
+      const auto id = static_cast<std::int64_t>(offer_.number_or(p + "id", i));
+      if (offer_.number_or(p + "until", -1.0) == interval) remove(id);
       if (offer_.number_or(p + "interval", 0.0) != interval) continue;
       State s;
-      s.id = i;
+      s.id = id;
       s.x = {offer_.number(p + "x"), offer_.number(p + "y"), 0.0};
       s.v = {offer_.number_or(p + "vx", 0.0), offer_.number_or(p + "vy", 0.0), 0.0};
       states.push_back(s);
       shapes.push_back(shape_);
-      shapes.back().id = i;
+      shapes.back().id = id;
+      shapes.back().epoch = interval;
     }
   }
 
@@ -112,7 +115,7 @@ class Discs {
       states = std::move(batch.states);
       shapes = std::move(batch.shapes);
     } catch (const BadMessage& error) {
-      throw ProtocolError(file + " is no checkpoint of this engine: " + error.what(), kBadInput);
+      throw ProgramError(file + " is no checkpoint of this engine: " + error.what(), kBadInput);
     }
   }
 
@@ -145,6 +148,11 @@ class Discs {
   std::vector<Shape> shapes;
 
  private:
+  void remove(std::int64_t id) {
+    std::erase_if(states, [id](const State& s) { return s.id == id; });
+    std::erase_if(shapes, [id](const Shape& s) { return s.id == id; });
+  }
+
   /// Force of a contact along its normal: never a pull. @param approach  speed of approach
   double push(double overlap, double approach) const {
     return overlap > 0.0 ? std::max(0.0, stiffness_ * overlap + damping_ * approach) : 0.0;
@@ -249,7 +257,7 @@ int main(int argc, char** argv) {
   try {
     world = connect(Role::Solid);
     if (!world.coupled())
-      throw ProtocolError(
+      throw ProgramError(
           "no fluid program was started beside it; start: mpirun -np 1 lbm scene.toml : -np 1 "
           "reference_engine",
           kBadInput);

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/io/scene_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "lbm_solver/io/scene_reader.h"
+#include "lbm_solver/io/table_reader.h"
+
+namespace lbm {
+namespace {
+
+/// Scenes that together make the reader ask for every key that it knows. A key that only one branch
+/// of the reader asks for needs a scene that takes this branch.
+constexpr std::string_view kScenes[] = {
+    R"(
+box.size = [1, 1]
+fluid = {density = 1, kinematic_viscosity = 1, velocity_scale = 1}
+numerics.cell = 0.1
+particles = {diameter = 0.1, density = 1}
+run.end_time = 1
+coupling.buoyancy = "fluid"
+boundary = [{side = "left", kind = "velocity", velocity = [0, 0]}, {side = "right", kind = "pressure"}]
+obstacle = [{centre = [0, 0], diameter = 1}, {from = [0, 0], to = [1, 1]}]
+average.from = 0
+sensor = [{name = "a", kind = "line", from = [0, 0], to = [1, 1]}]
+)",
+    R"(
+box.size = [1, 1, 1]
+fluid = {density = 1, kinematic_viscosity = 1, velocity_scale = 1}
+numerics.cell = 0.1
+run.end_time = 1
+boundary = [{side = "front", kind = "outflow", from = [0, 0], to = [1, 1]}]
+obstacle = [{centre = [0, 0, 0], diameter = 1}]
+sensor = [{name = "a", kind = "plane", axis = "x", at = 0.5, from = [0, 0, 0], to = [1, 1, 1]}, {name = "b", kind = "side", side = "front"}]
+)"};
+
+/// What the reader does not know of a key.
+struct Meaning {
+  std::string_view key, sentence;
+  std::string_view fallback = {};  ///< in words, where it is no fixed value
+  std::string_view range = {};     ///< in words
+};
+
+constexpr Meaning kMeanings[] = {
+    {"title", "Name of the scene in logs and pictures.", "file name"},
+    {"box.size",
+     "Lengths [x, y] of the box, or [x, y, z] for a scene in three dimensions, where every vector "
+     "below has three components.",
+     {},
+     "> 0"},
+    {"box.origin", "Lower corner of the box."},
+    {"box.depth", "Thickness of the layer that forces and masses of two dimensions belong to."},
+    {"box.sides_x", "Walls (no-slip) or periodic sides left and right."},
+    {"box.sides_y", "The same of bottom and top."},
+    {"box.sides_z", "The same of back and front, in three dimensions."},
+    {"box.pressure_jump", "Pressure of the low side minus that of the high side, if periodic."},
+    {"fluid.density", "Density of the fluid."},
+    {"fluid.kinematic_viscosity", "Kinematic viscosity of the fluid."},
+    {"fluid.gravity", "Gravity, which acts on the particles; the fluid gives them buoyancy."},
+    {"fluid.body_force", "Acceleration that drives the fluid."},
+    {"fluid.body_force_ramp", "Time in which the body force comes up as ½(1 - cos)."},
+    {"fluid.velocity_scale",
+     "Characteristic velocity: the largest speed to expect of fluid or particle."},
+    {"numerics.cell", "Size of a cell; give it or cells_per_diameter.", "from cells_per_diameter"},
+    {"numerics.cells_per_diameter", "Cells across the smallest particle; give it or cell.",
+     "from cell"},
+    {"numerics.time_step", "Time step of the fluid.", "by rule (collision.md)"},
+    {"numerics.lattice", "Velocity set; auto takes D2Q9, in three dimensions D3Q19."},
+    {"numerics.precision",
+     "Of the populations; single halves the memory (not with recursive_regularised)."},
+    {"numerics.collision", "Collision operator of the fluid (collision.md)."},
+    {"numerics.solid_term", "Solid collision operator of covered cells (solids.md)."},
+    {"numerics.scheme", "How solids act on the fluid (solids.md)."},
+    {"numerics.spring_stiffness",
+     "Of spring_immersed_boundary, in lattice units; unstable above about 0.01."},
+    {"numerics.weight",
+     "Weight B of operators that have one; auto takes viscous, in three dimensions balanced "
+     "(solids.md)."},
+    {"numerics.smagorinsky", "Constant S_c of the turbulence model; 0 leaves it out."},
+    {"numerics.magic", "Λ of TRT.", "3/16; 1/10 beside cells by resistance"},
+    {"particles.diameter", "Diameter of the particles."},
+    {"particles.density", "Density of the particles."},
+    {"particles.hydraulic_ratio",
+     "Radius that the flow sees over the particle's, one number or one a type; buoyancy is that "
+     "of the whole particle."},
+    {"particles.start", "Centres of particles, offered to the script as particle1_x and so on."},
+    {"particles.contact_stiffness", "Stiffness of contacts; it bounds the solid's time step.",
+     "none"},
+    {"particles.variables.NAME", "Any further number or text for the script."},
+    {"coupling.fluid_steps",
+     "Fluid steps a coupling interval, whose loads are averaged; tested up to 10.", "1"},
+    {"coupling.substeps", "Solid steps a coupling interval.", "by rule (collision.md)"},
+    {"coupling.inner_inertia", "Corrects loads for the inertia of the fluid inside a particle."},
+    {"coupling.buoyancy", "Which program adds the buoyancy."},
+    {"coupling.virtual_mass",
+     "Virtual mass of a particle over the mass of the fluid that it covers (loads.md).",
+     "1 for particles lighter than the fluid, else 0"},
+    {"coupling.carry_weight",
+     "In a box that is periodic along gravity, a body force on the fluid carries the weight of all "
+     "particles in it, whatever their number, so that the mixture does not fall."},
+    {"coupling.lubrication_range", "Gap below which lubrication acts; 0 leaves it out."},
+    {"coupling.schedule",
+     "serial-explicit, or parallel-explicit: both programs at once, loads one interval old."},
+    {"coupling.timeout",
+     "Longest wait of either program for the other, and of a rank for another of its program."},
+    {"coupling.connect_timeout",
+     "How long the solid's program may take to start, e.g. to import what it needs."},
+    {"run.end_time", "Time at which the run ends."},
+    {"run.steady_below",
+     "A fluid alone ends where its velocity changes by less than this a turnover; 0: never."},
+    {"run.checkpoint_every", "Both programs write a checkpoint this often; 0: never."},
+    {"boundary.side", "Side of the box; back and front in three dimensions."},
+    {"boundary.kind", "What holds there in place of a wall at rest (boundaries.md)."},
+    {"boundary.from",
+     "Where it begins along the side, on cell borders; in three dimensions a pair, along the "
+     "side's two axes.",
+     "whole side", "the side"},
+    {"boundary.to", "Where it ends, as from.", "whole side", "the side"},
+    {"boundary.velocity",
+     "Velocity of a velocity or moving_wall; at the middle of a parabolic profile.",
+     "required there"},
+    {"boundary.profile", "Profile of the velocity along the opening."},
+    {"boundary.frequency", "The velocity is multiplied by cos(2πft)."},
+    {"boundary.pressure", "Pressure of a pressure or outflow, against the reference."},
+    {"boundary.ramp", "Time in which the value comes up as ½(1 - cos)."},
+    {"obstacle.centre", "Centre of a disc or sphere at rest.", "required without from"},
+    {"obstacle.diameter", "Its diameter.", "required with centre"},
+    {"obstacle.hollow", "Whether the solid is everything outside of the circle or sphere."},
+    {"obstacle.spin", "Angular velocity of a disc (a number) or sphere (a vector)."},
+    {"obstacle.from", "Lower corner of a block of whole cells at rest.", "required without centre"},
+    {"obstacle.to", "Upper corner of the block.", "required with from"},
+    {"grains.file",
+     "Table x,y,diameter (x,y,z,diameter) in m of discs (spheres) at rest, beside the scene; at "
+     "most 256 MB.",
+     "none"},
+    {"initial.kind", "Flow at the beginning; channel is a parabola across y."},
+    {"initial.velocity", "Velocity of a uniform flow; its x component is the amplitude of others."},
+    {"initial.sharpness", "Steepness of the shear layers."},
+    {"initial.perturbation", "Disturbance of the shear layers over the velocity."},
+    {"output.fields_every", "How often fields are written; 0: never."},
+    {"output.probe_every",
+     "How often probes, points and loads of obstacles are written; 0: every interval."},
+    {"output.points", "Places whose pressure and velocity are written."},
+    {"output.probe_particles", "Ids of the particles that have rows in the table of probes.", "all",
+     "whole numbers"},
+    {"average.from", "Fields are averaged from this time on (output.md)."},
+    {"average.every", "How often they are sampled; 0: every interval."},
+    {"sensor.name", "Of its table, sensor-NAME.csv (output.md).", "required"},
+    {"sensor.kind", "What it measures along.", "required"},
+    {"sensor.every", "How often it writes a row; 0: every interval."},
+    {"sensor.from", "Begin of a line; lower corner of the part of a plane that counts.",
+     "of a plane: the box", "the box"},
+    {"sensor.to", "Its end; the upper corner.", "of a plane: the box", "the box"},
+    {"sensor.count", "Places of a line.", "20"},
+    {"sensor.axis", "Normal of a plane.", "required of a plane"},
+    {"sensor.at", "Place of a plane along it.", "required of a plane", "the box"},
+    {"sensor.side", "Side of the box.", "required of a side"},
+};
+
+const KeyNote* note_of(const KeyNotes& keys, std::string_view key) {
+  const auto found = std::find_if(keys.all().begin(), keys.all().end(),
+                                  [&](const KeyNote& n) { return n.key == key; });
+  return found == keys.all().end() ? nullptr : &*found;
+}
+
+bool has_meaning(const KeyNote& note) {
+  return std::any_of(std::begin(kMeanings), std::end(kMeanings),
+                     [&](const Meaning& m) { return m.key == note.key; });
+}
+
+KeyNotes all_keys() {
+  KeyNotes keys;
+  for (const std::string_view scene : kScenes) note_keys(std::string(scene), keys);
+  return keys;
+}
+
+/// Alternatives with a separator of words; "|" would end a cell of the table.
+std::string alternatives(const std::string& list, const char* separator) {
+  std::string out;
+  for (const char c : list)
+    if (c == '|')
+      out += separator;
+    else
+      out += c;
+  return out;
+}
+
+std::string row(const KeyNote& note, const Meaning& meaning) {
+  const std::string range =
+      meaning.range.empty() ? alternatives(note.range, ", ") : std::string(meaning.range);
+  return fmt::format(
+      "| `{}` | {} | {} | {} | {} | {} |\n", note.key, alternatives(note.type, " or "), note.unit,
+      meaning.fallback.empty() ? note.fallback : meaning.fallback, range, meaning.sentence);
+}
+
+}  // namespace
+
+std::string describe_keys() {
+  const KeyNotes keys = all_keys();
+  std::string out =
+      "| key | type | unit | default | range | meaning |\n|---|---|---|---|---|---|\n";
+  for (const Meaning& m : kMeanings)
+    if (const KeyNote* note = note_of(keys, m.key)) out += row(*note, m);
+  for (const KeyNote& note : keys.all())
+    if (!has_meaning(note)) out += row(note, {});
+  return out;
+}
+
+std::vector<std::string> complaints_about_keys() {
+  const KeyNotes keys = all_keys();
+  std::vector<std::string> complaints;
+  for (const KeyNote& note : keys.all())
+    if (!has_meaning(note))
+      complaints.push_back(note.key +
+                           " has no sentence: add one to kMeanings in io/scene_keys.cpp");
+  for (const Meaning& m : kMeanings)
+    if (!note_of(keys, m.key))
+      complaints.push_back(
+          fmt::format("{} has a sentence, but no scene of kScenes in io/scene_keys.cpp makes the "
+                      "reader ask for "
+                      "it: add one, or take the sentence out",
+                      m.key));
+  return complaints;
+}
+
+}  // namespace lbm

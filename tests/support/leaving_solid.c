@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/* leaving_solid STAGE HOW: a solid in C that leaves at a stage (connected, agreed, states, running, last,
+ * goodbye, refused) by MPI_Finalize only (finalize), by exit, with bplbm_close (farewell), or after bplbm_fail (fail). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bplbm_solid.h"
+
+static bplbm_solid* wire;
+static const char *stage, *how;
+
+/* Leaves where this is the stage at which it is to leave. */
+static void leave_at(const char* here) {
+  if (strcmp(stage, here)) return;
+  if (!strcmp(how, "exit")) exit(0);
+  if (!strcmp(how, "finalize")) {
+    PMPI_Finalize();
+    exit(0);
+  }
+  if (!strcmp(how, "fail")) bplbm_fail(wire, 42, "has had enough");
+  exit(bplbm_close(wire));
+}
+
+int main(int argc, char** argv) {
+  bplbm_setup setup;
+  bplbm_state state = {.id = 4, .x = {0.01, 0.04, 0.0}};
+  bplbm_shape shape = {.id = 4, .radius = 0.00125, .type = 1, .carrier = BPLBM_ITSELF};
+  bplbm_load load;
+  uint32_t asked = 0;
+  stage = argc > 1 ? argv[1] : "";
+  how = argc > 2 ? argv[2] : "";
+  if (bplbm_connect(&wire, "leaving_solid", "test") != BPLBM_OK) return bplbm_close(wire);
+  leave_at("connected");
+  shape.mass = 1250.0 * acos(-1.0) * shape.radius * shape.radius;
+  shape.inertia = 0.5 * shape.mass * shape.radius * shape.radius;
+  bplbm_scene(wire, &setup);
+  setup.particles = 1;
+  setup.radius[1] = setup.density[1] = 0.0;
+  if (!strcmp(stage, "refused")) setup.gravity[1] *= 2.0;
+  bplbm_agree(wire, &setup);
+  leave_at("refused");
+  leave_at("agreed");
+  for (int k = 0;; ++k) {
+    if (k == 3) leave_at("running");
+    if (k == 3 && !strcmp(stage, "goodbye")) {
+      bplbm_goodbye(wire, "has seen enough");
+      leave_at("goodbye");
+    }
+    bplbm_send(wire, 1, &state, &shape);
+    if (k == 0) leave_at("states");
+    if (bplbm_receive(wire, &load, &asked) != BPLBM_OK) return bplbm_close(wire);
+    if (asked & BPLBM_LAST) break;
+  }
+  leave_at("last");
+  return bplbm_close(wire);
+}

@@ -1,0 +1,119 @@
+"""The documents: every link leads somewhere, every citation is in the bibliography, every file that they name exists, no
+line of prose is wider than 120 characters, and every room opens with a short README."""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+from bplbm.project import ROOT
+
+WIDEST = 120  # characters of a line of prose; rows of tables, code and links alone may be longer
+LONGEST = 60  # lines of a room's README
+BIBLIOGRAPHY = "lbm_solver/docs/bibliography.md"
+ROOMS = ("lbm_solver", "liggghts_coupling", "protocol", "tools", "tests")
+# Folders that hold data of the room above, and READMEs that are a text of their own.
+DATA = re.compile(r"tests/(fuzz/corpus|hard/|support/stopped)|tools/bplbm/templates/|protocol/python/bplbm_solid")
+LONG = {"protocol/README.md", "protocol/python/README.md"}  # the text of the wire, and the page of a package
+WRITTEN_BY_TOOLS = re.compile(r"cases/report/")
+TAG = re.compile(r"(?<![\w`])\[(?:after |see )?([A-Z]?[a-z]*[A-Z][A-Za-z]+(?:19|20)\d\d"
+                 r"(?:, [A-Z][A-Za-z]+(?:19|20)\d\d)*)\](?!\()")
+
+
+def tracked(*patterns):
+    """Files of the repository; of a copy without git, all files."""
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns], cwd=ROOT,
+                            capture_output=True, text=True, check=False)
+    if listed.returncode == 0:
+        return sorted(ROOT / line for line in listed.stdout.splitlines() if (ROOT / line).is_file())
+    return sorted(p for pattern in patterns for p in ROOT.rglob(pattern) if "build" not in p.parts)
+
+
+def name(path):
+    return path.relative_to(ROOT).as_posix()
+
+
+def prose(text):
+    """Lines outside of code, with their numbers."""
+    code = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.lstrip().startswith("```"):
+            code = not code
+        elif not code:
+            yield number, line
+
+
+def anchor(heading):
+    """Of a heading, as GitHub and most other renderers make it."""
+    heading = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading.replace("`", ""))
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def anchors(path):
+    return {anchor(line.lstrip("#")) for _, line in prose(path.read_text()) if line.startswith("#")}
+
+
+def broken_links(path, text):
+    for number, line in prose(text):
+        for target in re.findall(r"\]\(([^)\s]+)\)", line):
+            file, _, place = target.partition("#")
+            if file.startswith(("http://", "https://")) or target == "TUTORIAL":  # filled in by tools/new
+                continue
+            there = (path.parent / file).resolve() if file else path
+            if not there.exists():
+                yield f"{name(path)}:{number}: the link {target} leads nowhere"
+            elif place and place not in anchors(there):
+                yield f"{name(path)}:{number}: {file or 'this page'} has no heading #{place}"
+
+
+def wide_lines(path, text):
+    if WRITTEN_BY_TOOLS.match(name(path)):
+        return
+    for number, line in prose(text):
+        if len(line) > WIDEST and not line.lstrip().startswith("|"):
+            yield f"{name(path)}:{number}: {len(line)} characters, more than {WIDEST}"
+
+
+def lost_files(path, text):
+    """Files that a recipe or a table names by their path from the root."""
+    for number, line in prose(text):
+        for file in re.findall(r"`((?:lbm_solver|liggghts_coupling|protocol|tests|tools)/[\w/.\-]+)`", line):
+            capitals = any(part.split(".")[0].split("_")[-1].isupper() for part in file.split("/"))  # NAME.h
+            if not capitals and not (ROOT / file).exists() and not list(ROOT.glob(file + ".*")):
+                yield f"{name(path)}:{number}: there is no {file}"
+
+
+def unknown_citations(known):
+    for path in tracked("*.md", "*.h", "*.cpp", "*.py"):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            for tags in TAG.findall(line):
+                for tag in tags.split(", "):
+                    if tag not in known:
+                        yield f"{name(path)}:{number}: [{tag}] is not in {BIBLIOGRAPHY}"
+
+
+def rooms_without_readme():
+    folders = {path.parent for path in tracked() if name(path).split("/")[0] in ROOMS and not DATA.match(name(path))}
+    for folder in sorted(folders):
+        readme = folder / "README.md"
+        if not readme.exists():
+            yield f"{name(folder)} has no README.md"
+        elif name(readme) not in LONG and len(readme.read_text().splitlines()) > LONGEST:
+            yield f"{name(readme)} has more than {LONGEST} lines"
+
+
+def complaints():
+    known = set(re.findall(r"^- \*\*(\w+)\*\*", (ROOT / BIBLIOGRAPHY).read_text(), re.M))
+    for path in tracked("*.md"):
+        text = path.read_text()
+        yield from broken_links(path, text)
+        yield from wide_lines(path, text)
+        yield from lost_files(path, text)
+    yield from unknown_citations(known)
+    yield from rooms_without_readme()
+
+
+def main():
+    found = list(complaints())
+    print("\n".join(found) or f"check | {len(tracked('*.md'))} documents hold together")
+    return 1 if found else 0
