@@ -75,6 +75,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
       probe_times_(scene.output.probe_every, plan.interval()),
       folder_(folder),
       first_(first),
+      end_(plan.intervals),
       guard_every_(std::max<std::int64_t>(1, kGuardSteps / plan.fluid_steps)),
       start_(std::chrono::steady_clock::now()),
       last_progress_(start_) {
@@ -147,7 +148,7 @@ void Observers::after_interval(std::int64_t state, Fluid& fluid, const Particles
   intervals_done_ = state + 1;
   if ((state + 1) % guard_every_ == 0) guard(state + 1, fluid, particles);
   if (particles && probe_times_.due(state)) write_particles(time_of(state), *particles);
-  if (seconds_since(last_progress_) > kProgressSeconds || intervals_done_ == plan_.intervals)
+  if (seconds_since(last_progress_) > kProgressSeconds || intervals_done_ == end_)
     report_progress(state, particles);
 }
 
@@ -323,8 +324,8 @@ void Observers::report_progress(std::int64_t state, const Particles* particles) 
   last_progress_ = std::chrono::steady_clock::now();
   const double wall = seconds_since(start_);
   const double made = static_cast<double>(intervals_done_ - first_);
-  const double done = static_cast<double>(intervals_done_) / static_cast<double>(plan_.intervals);
-  const double left = static_cast<double>(plan_.intervals - intervals_done_) * wall / made;
+  const double done = static_cast<double>(intervals_done_) / static_cast<double>(end_);
+  const double left = static_cast<double>(end_ - intervals_done_) * wall / made;
   const double updates =
       made * plan_.fluid_steps * plan_.domain.nx * plan_.domain.ny * plan_.domain.nz;
   log_.progress(done,

@@ -48,6 +48,10 @@ class Observers {
   Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
             const std::string& folder, Log& log, std::int64_t first = 0);
 
+  /// The run stops at this state, which --until may have put before the scene's end: progress counts
+  /// to it.
+  void ends_at(std::int64_t state) { end_ = state; }
+
   /// What a checkpoint must keep of the observers, complete on rank 0; `load` wants it on every
   /// rank. To be asked for before `at_state`, which the run that goes on calls again. Collective.
   Record save() const;
@@ -112,7 +116,7 @@ class Observers {
   std::optional<SteadyWatch> steady_;
   std::optional<FieldWriter> fields_;  // of rank 0, like the tables
   bool fresh_ = true;                  // it does not go on from a checkpoint
-  std::int64_t first_, guard_every_, intervals_done_ = 0;
+  std::int64_t first_, end_, guard_every_, intervals_done_ = 0;
   double max_speed_ = 0.0, last_speed_ = 0.0;  // of the fluid, lattice units
   SpeedRecord speeds_;
   bool warned_ = false;                                 // of a speed above kWarnSpeed

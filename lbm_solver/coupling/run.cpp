@@ -123,6 +123,7 @@ class CoupledRun {
         end_(last_interval(plan, options)),
         times_(scene, plan),
         keep_last_(!restart || !restart->earlier) {
+    observers_.ends_at(end_);
     log.say(start_.interval, "coupling", "agreed with {} {}: {} substeps an interval of {:.6g} s{}",
             partner_.program, partner_.program_version, plan.substeps, plan.interval(),
             scene.coupling->overlapped ? ", overlapped" : "");
@@ -343,6 +344,7 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     say_restart(*restart, log);
   }
   const std::int64_t end = last_interval(plan, options);
+  observers.ends_at(end);
   const StopTimes times(scene, plan);
   std::string ending = "complete";
   PartClock clock;

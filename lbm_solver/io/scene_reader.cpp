@@ -425,6 +425,7 @@ SensorScene read_sensor(TableReader t, const BoxScene& box) {
   SensorScene s;
   const int d = box.dimension;
   s.name = sensor_name(t);
+  if (!t.has("kind")) t.fail("kind", "is missing", "give line, plane or side");
   const std::string kind = t.choice_or("kind", "", {"line", "plane", "side"});
   s.kind = kind == "line" ? Kind::Line : kind == "side" ? Kind::Side : Kind::Plane;
   s.every = t.number_or("every", 0.0, Bounds::non_negative(), "s");
@@ -437,6 +438,7 @@ SensorScene read_sensor(TableReader t, const BoxScene& box) {
   } else if (s.kind == Kind::Plane) {
     std::vector<std::string> axes{"x", "y", "z"};
     axes.resize(d);
+    if (!t.has("axis")) t.fail("axis", "is missing", "give the plane's normal, as \"x\"");
     s.axis = t.choice_or("axis", "", axes)[0] - 'x';
     s.at = t.number("at", {box.origin[s.axis], box.origin[s.axis] + box.size[s.axis]}, "m");
     if (t.has("from")) s.from = t.vector("from", d, "[m]");
@@ -444,6 +446,8 @@ SensorScene read_sensor(TableReader t, const BoxScene& box) {
   } else {
     std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
     sides.resize(2 * d);
+    if (!t.has("side"))
+      t.fail("side", "is missing", fmt::format("give one of: {}", fmt::join(sides, ", ")));
     const std::string side = t.choice_or("side", "", sides);
     s.side = static_cast<SideName>(std::find(sides.begin(), sides.end(), side) - sides.begin());
   }

@@ -91,7 +91,7 @@ def bed(size, diameters, height, random_numbers):
 def packing(grains, dimensions):
     """LIGGGHTS commands that create the grains, and nothing when a run goes on from a checkpoint."""
     lines = [f"# {len(grains)} {'discs' if dimensions == 2 else 'spheres'}; made by {tool('new')}. {tool('make_packing')} makes dense "
-             "ones in two dimensions."]
+             "ones."]
     density = "${disc_density}" if dimensions == 2 else "${density_max}"
     for i, (place, diameter) in enumerate(grains, 1):
         x, y, z = [*place, 0.0][:3]

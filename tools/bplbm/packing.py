@@ -1,12 +1,12 @@
-"""A dense, polydisperse packing of discs in a box, periodic or walled, relaxed with LIGGGHTS.
+"""A dense, polydisperse packing of discs, or of spheres, in a box, periodic or walled, relaxed with LIGGGHTS.
 
-Discs of the wished sizes start at random places, repel each other and the walls, and are slowed until
-none overlaps by more than the bound. Written are
+Discs or spheres of the wished sizes start at random places, repel each other and the walls, and are slowed until none
+overlaps by more than the bound. Written are
 
   NAME.liggghts   create_atoms and set lines, to be included after create_box: LIGGGHTS reads them
                   without the traps of write_data and insert/pack in two dimensions. Uses the script's
-                  variable disc_density (density × depth)
-  NAME.csv        x,y,diameter in m, also usable as [grains] of a scene
+                  variable disc_density (density × depth), for spheres density_max
+  NAME.csv        x,y,diameter (x,y,z,diameter) in m, also usable as [grains] of a scene
 """
 
 import argparse
@@ -22,7 +22,22 @@ from bplbm.project import BIN, tool
 
 DENSITY, STEP_PART = 1000.0, 0.1
 ROUNDS, STEPS = 60, 2000
-JAMMED = 0.86  # area fraction beyond which no packing of discs relaxes
+JAMMED = {2: 0.86, 3: 0.66}  # fraction of the box beyond which no packing relaxes
+USUAL = {2: 0.80, 3: 0.55}
+BALL = {2: np.pi / 4, 3: np.pi / 6}  # of a diameter of 1
+
+
+def dimensions(args):
+    return len(args.box) // 2
+
+
+def ends(args):
+    """Lower and upper corner of the box [m]."""
+    return np.array(args.box[::2]), np.array(args.box[1::2])
+
+
+def kind(args):
+    return "discs" if dimensions(args) == 2 else "spheres"
 
 
 def fail(text):
@@ -34,20 +49,26 @@ def arguments():
     p = argparse.ArgumentParser(prog=tool("make_packing"), description=__doc__,
                                 formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--out", required=True, metavar="NAME", help="files NAME.liggghts and NAME.csv")
-    p.add_argument("--box", required=True, nargs=4, type=float, metavar=("X_LO", "X_HI", "Y_LO", "Y_HI"),
-                   help="[m]")
+    p.add_argument("--box", required=True, nargs="+", type=float, metavar="LO HI",
+                   help="X_LO X_HI Y_LO Y_HI of discs, with Z_LO Z_HI of spheres [m]")
     p.add_argument("--diameter", required=True, nargs=2, type=float, metavar=("SMALLEST", "LARGEST"),
                    help="[m]")
     p.add_argument("--law", default="uniform", choices=["uniform", "lognormal"],
                    help="of the diameters; lognormal: ± 2 σ between the two, cut off there")
     group = p.add_mutually_exclusive_group()
-    group.add_argument("--count", type=int, help="number of discs")
-    group.add_argument("--fraction", type=float, default=0.80, help="area fraction of the box; default 0.80")
-    p.add_argument("--periodic", default="", choices=["", "x", "y", "xy"], help="periodic directions")
+    group.add_argument("--count", type=int, help="number of discs or spheres")
+    group.add_argument("--fraction", type=float, help="of the box that they fill; default 0.80, of spheres 0.55")
+    p.add_argument("--periodic", default="", choices=["", "x", "y", "z", "xy", "xz", "yz", "xyz"], help="periodic directions")
     p.add_argument("--overlap", type=float, default=1e-3, help="largest overlap over the smaller radius")
     p.add_argument("--seed", type=int, default=1)
     p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
-    return p.parse_args()
+    args = p.parse_args()
+    if len(args.box) not in (4, 6):
+        fail("--box: give X_LO X_HI Y_LO Y_HI, of spheres also Z_LO Z_HI")
+    if "z" in args.periodic and dimensions(args) == 2:
+        fail("--periodic z: a box of discs has no z; give six numbers as --box for spheres")
+    args.fraction = USUAL[dimensions(args)] if args.fraction is None else args.fraction
+    return args
 
 
 def diameters(args, random):
@@ -59,87 +80,85 @@ def diameters(args, random):
         fail("--box, --diameter, --fraction and --overlap are finite numbers")
     if (args.count is not None and args.count < 1) or not args.fraction > 0 or not args.overlap > 0:
         fail("--count is a whole number of at least 1, --fraction and --overlap are positive")
-    area = (args.box[1] - args.box[0]) * (args.box[3] - args.box[2])
-    if not area > 0 or args.box[1] <= args.box[0]:
+    low, high = ends(args)
+    if not np.all(low < high):
         fail("--box: give X_LO X_HI Y_LO Y_HI with X_LO < X_HI and Y_LO < Y_HI")
+    room, d = np.prod(high - low), dimensions(args)
 
     def draw():
         if args.law == "uniform" or lo == hi:
             return random.uniform(lo, hi)
         middle, sigma = 0.5 * np.log(lo * hi), 0.25 * np.log(hi / lo)
         while True:
-            d = np.exp(random.normal(middle, sigma))
-            if lo <= d <= hi:
-                return d
+            size = np.exp(random.normal(middle, sigma))
+            if lo <= size <= hi:
+                return size
 
     sizes, filled = [], 0.0
-    while len(sizes) < args.count if args.count else filled < args.fraction * area:
+    while len(sizes) < args.count if args.count else filled < args.fraction * room:
         sizes.append(draw())
-        filled += np.pi / 4 * sizes[-1] ** 2
-    if filled > JAMMED * area:
-        fail(f"{len(sizes)} discs fill {filled / area:.2f} of the box; above {JAMMED} they cannot all fit: "
+        filled += BALL[d] * sizes[-1] ** d
+    if filled > JAMMED[d] * room:
+        fail(f"{len(sizes)} {kind(args)} fill {filled / room:.2f} of the box; above {JAMMED[d]} they cannot all fit: "
              "take fewer or smaller ones")
     return np.array(sizes)
 
 
 def script(args, places, sizes):
     """LIGGGHTS' input: soft, heavily damped repulsion, in rounds that each end with a dump."""
-    x_lo, x_hi, y_lo, y_hi = args.box
-    mass = DENSITY * np.pi / 4 * sizes.min() ** 2
+    d, (low, high) = dimensions(args), ends(args)
+    mass = DENSITY * BALL[d] * sizes.min() ** d
     stiffness = 1e5
     step = STEP_PART * np.sqrt(mass / stiffness)
     damping = 2 * 0.3 * np.sqrt(stiffness / mass)
-    side = {axis: "p" if axis in args.periodic else "f" for axis in "xy"}
-    discs = "\n".join(f"create_atoms 1 single {x:.17g} {y:.17g} 0.0 units box" for x, y in places)
-    sets = "\n".join(f"set atom {i + 1} diameter {d:.17g} density {DENSITY}" for i, d in enumerate(sizes))
+    side = {axis: "p" if axis in args.periodic or (axis == "z" and d == 2) else "f" for axis in "xyz"}
+    grains = "\n".join("create_atoms 1 single " + " ".join(f"{v:.17g}" for v in [*place, 0.0][:3]) + " units box" for place in places)
+    sets = "\n".join(f"set atom {i + 1} diameter {size:.17g} density {DENSITY}" for i, size in enumerate(sizes))
+    box = " ".join(f"{lo:.17g} {hi:.17g}" for lo, hi in [*zip(low, high, strict=True), *([(-0.5, 0.5)] if d == 2 else [])])
     walls = "".join(
         f"fix {axis}{k} all wall/gran model hooke/stiffness primitive type 1 {axis}plane {at:.17g}\n"
-        for axis, ends in (("x", (x_lo, x_hi)), ("y", (y_lo, y_hi))) if side[axis] == "f"
-        for k, at in enumerate(ends))
+        for axis, lo, hi in zip("xyz", low, high, strict=False) if side[axis] == "f" for k, at in enumerate((lo, hi)))
     properties = "".join(f"fix {name} all property/global {name} peratomtypepair 1 {value:.17g}\n"
                          for name, value in (("kn", stiffness), ("kt", 0.0), ("gamman", damping),
                                              ("gammat", 0.0), ("coefficientFriction", 0.0)))
-    return f"""dimension 2
+    return f"""dimension {d}
 units si
 atom_style granular
 atom_modify map array
-boundary {side['x']} {side['y']} p
+boundary {side['x']} {side['y']} {side['z']}
 newton off
 communicate single vel yes
-region box block {x_lo:.17g} {x_hi:.17g} {y_lo:.17g} {y_hi:.17g} -0.5 0.5 units box
+region box block {box} units box
 create_box 1 box
 neighbor {0.2 * sizes.max():.17g} bin
 neigh_modify delay 0
-{discs}
+{grains}
 {sets}
 {properties}pair_style gran model hooke/stiffness
 pair_coeff * *
 {walls}fix move all nve/limit radius_ratio 0.02
 fix slow all viscous {0.05 * mass / step:.17g}
-fix flat all enforce2d
+{"fix flat all enforce2d" if d == 2 else ""}
 timestep {step:.17g}
 thermo {STEPS}
-dump places all custom {STEPS} places.*.txt id x y
-dump_modify places sort id format "%d %.17g %.17g"
+dump places all custom {STEPS} places.*.txt id x y z
+dump_modify places sort id format "%d %.17g %.17g %.17g"
 """
 
 
 def separations(places, sizes, args):
-    """Largest overlap over the smaller radius, of discs with each other and with the walls."""
-    x_lo, x_hi, y_lo, y_hi = args.box
-    length = np.array([x_hi - x_lo, y_hi - y_lo])
-    worst = 0.0
+    """Largest overlap over the smaller radius, of grains with each other and with the walls."""
+    low, high = ends(args)
+    length, worst = high - low, 0.0
+    periodic = np.array([axis in args.periodic for axis in "xyz"[:len(low)]])
     for i in range(len(places) - 1):
         apart = places[i + 1:] - places[i]
-        for axis in (0, 1):
-            if "xy"[axis] in args.periodic:
-                apart[:, axis] -= length[axis] * np.round(apart[:, axis] / length[axis])
-        overlap = 0.5 * (sizes[i] + sizes[i + 1:]) - np.hypot(apart[:, 0], apart[:, 1])
+        apart -= periodic * length * np.round(apart / length)
+        overlap = 0.5 * (sizes[i] + sizes[i + 1:]) - np.linalg.norm(apart, axis=1)
         worst = max(worst, (overlap / (0.5 * np.minimum(sizes[i], sizes[i + 1:]))).max())
-    for axis, (lo, hi) in enumerate(((x_lo, x_hi), (y_lo, y_hi))):
-        if "xy"[axis] not in args.periodic:
-            out = np.maximum(lo + 0.5 * sizes - places[:, axis], places[:, axis] + 0.5 * sizes - hi)
-            worst = max(worst, (out / (0.5 * sizes)).max())
+    for axis in np.flatnonzero(~periodic):
+        out = np.maximum(low[axis] + 0.5 * sizes - places[:, axis], places[:, axis] + 0.5 * sizes - high[axis])
+        worst = max(worst, (out / (0.5 * sizes)).max())
     return worst
 
 
@@ -157,8 +176,8 @@ def relax(args, places, sizes):
                 file = pathlib.Path(folder, f"places.{k * STEPS}.txt")
                 rows = np.loadtxt(file, skiprows=9, ndmin=2)
                 if len(rows) != len(sizes):
-                    fail(f"{len(sizes) - len(rows)} discs left the box; take another seed or a lower fraction")
-                places = wrap(rows[:, 1:3], args)
+                    fail(f"{len(sizes) - len(rows)} {kind(args)} left the box; take another seed or a lower fraction")
+                places = wrap(rows[:, 1:1 + dimensions(args)], args)
                 left = separations(places, sizes, args)
                 if left <= args.overlap:
                     return places, left
@@ -167,20 +186,19 @@ def relax(args, places, sizes):
 
 def wrap(places, args):
     """Back into the box through periodic sides."""
-    lo = np.array([args.box[0], args.box[2]])
-    length = np.array([args.box[1], args.box[3]]) - lo
-    for axis in (0, 1):
-        if "xy"[axis] in args.periodic:
-            places[:, axis] = lo[axis] + (places[:, axis] - lo[axis]) % length[axis]
+    low, high = ends(args)
+    for axis, name in enumerate("xyz"[:len(low)]):
+        if name in args.periodic:
+            places[:, axis] = low[axis] + (places[:, axis] - low[axis]) % (high[axis] - low[axis])
     return places
 
 
-MADE_BY = "discs; made by tools/make_packing"
+MADE_BY = "; made by tools/make_packing"
 
 
 def refuse_others(args):
     """A mistyped name costs no file that is no packing."""
-    for ending, ours in ((".liggghts", MADE_BY), (".csv", "x,y,diameter")):
+    for ending, ours in ((".liggghts", MADE_BY), (".csv", "x,y,")):
         path = pathlib.Path(args.out + ending)
         if not path.exists():
             continue
@@ -192,13 +210,15 @@ def refuse_others(args):
 
 
 def write(args, places, sizes):
-    lines = [f"# {len(sizes)} {MADE_BY} {' '.join(sys.argv[1:])}"]
-    for i, ((x, y), d) in enumerate(zip(places, sizes)):
-        lines.append(f"create_atoms 1 single {x:.9g} {y:.9g} 0.0 units box")
-        lines.append(f"set atom {i + 1} diameter {d:.9g} density ${{disc_density}}")
+    density = "${disc_density}" if dimensions(args) == 2 else "${density_max}"
+    lines = [f"# {len(sizes)} {kind(args)}{MADE_BY} {' '.join(sys.argv[1:])}"]
+    for i, (place, size) in enumerate(zip(places, sizes, strict=True)):
+        lines.append("create_atoms 1 single " + " ".join(f"{v:.9g}" if v else "0.0" for v in [*place, 0.0][:3]) + " units box")
+        lines.append(f"set atom {i + 1} diameter {size:.9g} density {density}")
     pathlib.Path(args.out + ".liggghts").write_text("\n".join(lines) + "\n")
-    rows = [f"{x:.9g},{y:.9g},{d:.9g}" for (x, y), d in zip(places, sizes)]
-    pathlib.Path(args.out + ".csv").write_text("\n".join(["x,y,diameter", *rows]) + "\n")
+    rows = [",".join(f"{v:.9g}" for v in (*place, size)) for place, size in zip(places, sizes, strict=True)]
+    head = "x,y,diameter" if dimensions(args) == 2 else "x,y,z,diameter"
+    pathlib.Path(args.out + ".csv").write_text("\n".join([head, *rows]) + "\n")
 
 
 def main():
@@ -211,17 +231,16 @@ def main():
     if args.look:
         return
     margin = 0.5 * sizes
-    low = np.array([args.box[0], args.box[2]])
-    high = np.array([args.box[1], args.box[3]])
+    low, high = ends(args)
     places = random.uniform(low + margin[:, None], high - margin[:, None])
     places, left = relax(args, places, sizes)
-    area = np.prod(high - low)
-    fraction = np.pi / 4 * (sizes**2).sum() / area
+    d = dimensions(args)
+    fraction = BALL[d] * (sizes**d).sum() / np.prod(high - low)
     if left > args.overlap:
-        fail(f"overlaps of {left:.2g} radii are left at an area fraction of {fraction:.3f}; take a lower "
+        fail(f"overlaps of {left:.2g} radii are left at a fraction of {fraction:.3f}; take a lower "
              "fraction or a larger --overlap")
     write(args, places, sizes)
-    print(f"packing | {len(sizes)} discs, area fraction {fraction:.3f}, largest overlap {max(left, 0):.2g} radii "
+    print(f"packing | {len(sizes)} {kind(args)}, {'area' if d == 2 else 'volume'} fraction {fraction:.3f}, largest overlap {max(left, 0):.2g} radii "
           f"-> {args.out}.liggghts, {args.out}.csv")
 
 

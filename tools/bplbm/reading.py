@@ -15,14 +15,18 @@ BOND_STATES = ("intact", "broken by tension", "broken by shear")
 class Table(dict):
     """Columns of equal length: name -> array, in SI units (`units`)."""
 
+    said = {}  # name -> unit, as the file's first line has it; older files have none
+
     @property
     def units(self):
         """name -> unit; "1" for a plain number."""
-        return {name: UNIT_OF_COLUMN.get(name, "1") for name in self}
+        return {name: self.said.get(name, UNIT_OF_COLUMN.get(name, "1")) for name in self}
 
     def where(self, chosen):
         """The rows of a mask or of indices, as another Table."""
-        return Table({name: column[chosen] for name, column in self.items()})
+        part = Table({name: column[chosen] for name, column in self.items()})
+        part.said = self.said
+        return part
 
     def to_pandas(self):
         """A DataFrame, whose attrs["units"] are the units. Throws ImportError without pandas."""
@@ -39,15 +43,20 @@ class Table(dict):
 def read_table(path):
     """Columns of a CSV file of ours: a Table, name -> array of numbers, or of words as the `mode` of a break."""
     with open(path) as file:
-        names = [column.split(" [")[0] for column in file.readline().strip().split(",")]
+        heads = [column.rstrip("]").split(" [") for column in file.readline().strip().split(",")]
         lines = [line for line in file.read().splitlines() if line]
-    if not lines:
-        return Table({name: np.zeros(0) for name in names})
+    names = [head[0] for head in heads]
+    table = Table(zip(names, columns_of(lines) if lines else [np.zeros(0)] * len(names), strict=True))
+    table.said = {head[0]: head[1] for head in heads if len(head) > 1}
+    return table
+
+
+def columns_of(lines):
+    """Arrays of numbers, or of words where a column has any."""
     try:
-        columns = np.loadtxt(lines, delimiter=",", ndmin=2).T
+        return np.loadtxt(lines, delimiter=",", ndmin=2).T
     except ValueError:  # there are words
-        columns = map(numbers_or_words, zip(*(line.split(",") for line in lines), strict=True))
-    return Table(zip(names, columns, strict=True))
+        return map(numbers_or_words, zip(*(line.split(",") for line in lines), strict=True))
 
 
 def numbers_or_words(column):

@@ -50,6 +50,13 @@ class Run:
         return Frames(self.folder / "fields.h5")
 
     @property
+    def averages(self):
+        """What [average] has summed: dict velocity_mean, velocity_rms [m/s], pressure_mean, pressure_rms [Pa] -> array, and
+        `from`, `to` [s] and `samples`. Throws OSError where there is none."""
+        with h5py.File(self.folder / "averages.h5") as f:
+            return {**{name: f[name][...] for name in f}, **{key: f.attrs[key] for key in ("from", "to", "samples")}}
+
+    @property
     def results(self):
         """Judged results: dicts with name, value, unit, reference, error, tolerance, pass."""
         return self.summary["results"]

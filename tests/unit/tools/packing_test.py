@@ -61,10 +61,32 @@ class Packing(unittest.TestCase):
         self.assertEqual(texts[0], texts[1])
         self.assertNotEqual(texts[0], texts[2])
 
+    def test_spheres(self):
+        side = 0.012
+        job = make(self.folder.name, "--box", *["0", str(side)] * 3, "--fraction", "0.5", "--periodic", "xz")
+        self.assertEqual(job.returncode, 0, job.stdout + job.stderr)
+        self.assertIn("spheres, volume fraction 0.5", job.stdout)
+        spheres = self.discs()
+        self.assertEqual(spheres.shape[1], 4)
+        places, sizes = spheres[:, :3], spheres[:, 3]
+        self.assertGreaterEqual(np.pi / 6 * (sizes**3).sum() / side**3, 0.5)
+        self.assertTrue((places >= 0).all() and (places <= side).all())
+        worst = (np.maximum(0.5 * sizes - places[:, 1], places[:, 1] + 0.5 * sizes - side) / (0.5 * sizes)).max()  # walls in y
+        for i in range(len(sizes) - 1):
+            apart = places[i + 1:] - places[i]
+            apart[:, [0, 2]] -= side * np.round(apart[:, [0, 2]] / side)
+            overlap = 0.5 * (sizes[i] + sizes[i + 1:]) - np.sqrt((apart**2).sum(axis=1))
+            worst = max(worst, (overlap / (0.5 * np.minimum(sizes[i], sizes[i + 1:]))).max())
+        self.assertLessEqual(worst, 1e-3 + 1e-6)
+        script = pathlib.Path(self.folder.name, "p.liggghts").read_text()
+        self.assertEqual(script.count("density ${density_max}"), len(sizes))
+
     def test_refusals(self):
         for more, word in ((["--fraction", "0.95"], "cannot all fit"), (["--count", "900"], "cannot all fit"),
                            (["--fraction", "nan"], "finite"), (["--count", "0"], "at least 1"), (["--seed", "-1"], "--seed"),
-                           (["--box", "0", "nan", "0", "1"], "finite"), (["--overlap", "0"], "positive")):
+                           (["--box", "0", "nan", "0", "1"], "finite"), (["--overlap", "0"], "positive"),
+                           (["--box", "0", "1", "0"], "of spheres also Z_LO Z_HI"), (["--periodic", "z"], "a box of discs has no z"),
+                           (["--box", "0", "0.06", "0", "0.03", "0", "0.03", "--fraction", "0.7"], "above 0.66")):
             job = make(self.folder.name, *more)
             self.assertEqual(job.returncode, 2)
             self.assertIn(word, job.stderr)

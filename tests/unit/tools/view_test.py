@@ -32,7 +32,7 @@ names = lambda data: {data.GetArrayName(i): list(data.GetArray(i).GetRange(-1)) 
 leaves = sm.Fetch(source).NewIterator()
 while not leaves.IsDoneWithTraversal():
     block = leaves.GetCurrentDataObject()
-    found.append({"bounds": list(block.GetBounds()), "cells": block.GetNumberOfCells(),
+    found.append({"bounds": list(block.GetBounds()), "cells": block.GetNumberOfCells(), "points": block.GetNumberOfPoints(),
                   "of_cells": names(block.GetCellData()), "of_points": names(block.GetPointData())})
     leaves.GoToNextItem()
 print("FOUND" + json.dumps({"times": list(source.TimestepValues), "blocks": found}))
@@ -87,7 +87,7 @@ class View(unittest.TestCase):
                         self.assertAlmostEqual(fluid["bounds"][2 * axis + 1], size[axis], 6)
                         self.assertAlmostEqual(particles["bounds"][2 * axis], grains[:, 1 + axis].min(), 6)
                         self.assertAlmostEqual(particles["bounds"][2 * axis + 1], grains[:, 1 + axis].max(), 6)
-                    self.assertEqual(particles["cells"], len(grains))
+                    self.assertEqual(particles["points"], len(grains))
                     self.assertEqual(lines["cells"], int((bonds == 0).sum()))
                     self.assertEqual(lines["of_cells"]["broken"], [0.0, 0.0])
                     self.assertEqual(set(particles["of_points"]),
