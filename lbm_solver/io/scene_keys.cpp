@@ -149,9 +149,6 @@ constexpr Meaning kMeanings[] = {
     {"coupling.virtual_mass",
      "Virtual mass of a particle over the mass of the fluid that it covers (loads.md).",
      "1 for particles lighter than the fluid, else 0"},
-    {"coupling.carry_weight",
-     "In a box that is periodic along gravity, a body force on the fluid carries the weight of all "
-     "particles in it, whatever their number, so that the mixture does not fall."},
     {"coupling.lubrication_range", "Gap below which lubrication acts; 0 leaves it out."},
     {"coupling.schedule",
      "serial-explicit, or parallel-explicit: both programs at once, loads one interval old."},

@@ -19,11 +19,13 @@ using std::numbers::pi;
 constexpr double kTau = 1.0;
 
 KernelChoice choice(const char* lattice, const Vec3& force) {
-  KernelChoice c{"trt",
-                 "none",
-                 force.norm() > 0.0,
-                 "resistance",
-                 {kTau, kResistanceMagic, 0.0, force.x(), force.y(), force.z()}};
+  KernelChoice c{.force = force.norm() > 0.0,
+                 .solid_term = "resistance",
+                 .parameters = {.tau = kTau,
+                                .magic = kResistanceMagic,
+                                .force_x = force.x(),
+                                .force_y = force.y(),
+                                .force_z = force.z()}};
   c.lattice = lattice;
   return c;
 }
