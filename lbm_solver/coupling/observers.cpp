@@ -104,8 +104,7 @@ std::int64_t Observers::next_look(std::int64_t state) const {
     next = std::min(next, probe_times_.next(state + 1));
   if (field_times_) next = std::min(next, field_times_->next(state + 1));
   if (average_) next = std::min(next, average_->next(state + 1));
-  for (const auto& sensor : sensors_)
-    next = std::min(next, sensor->sums() ? state + 1 : sensor->next(state + 1));
+  for (const auto& sensor : sensors_) next = std::min(next, sensor->next(state + 1));
   return next;
 }
 

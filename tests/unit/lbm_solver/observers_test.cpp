@@ -64,7 +64,7 @@ TEST_F(ObserversTest, LookAtTheNextStateThatAnythingIsDueAt) {
   EXPECT_TRUE(observers_->draws_at(50));
   EXPECT_FALSE(observers_->draws_at(30));
   watch("[output]\nprobe_every = 0.03\n[[obstacle]]\ncentre = [0.05, 0.04]\ndiameter = 0.04\n");
-  EXPECT_EQ(observers_->next_look(7), 8);  // loads of obstacles are summed in every step
+  EXPECT_EQ(observers_->next_look(7), 30);  // loads of obstacles are summed within the steps
 }
 
 TEST_F(ObserversTest, WarnOnceAboveATenthAndStopAboveAFifthOfC) {
