@@ -160,10 +160,10 @@ struct CouplingScene {
   std::optional<double> virtual_mass;  ///< over covered fluid; absent: where particles are light
   /// A body force on the fluid carries the weight of all particles in it, whatever their number.
   bool carry_weight = false;
-  double lubrication_range = 0.0;      ///< gap below which it acts [cells]; 0: off
-  bool overlapped = false;             ///< both programs at once, loads one interval old
-  double timeout = 300.0;              ///< longest wait for the solid [s]
-  double connect_timeout = 30.0;       ///< how long its program may take to start [s]
+  double lubrication_range = 0.0;  ///< gap below which it acts [cells]; 0: off
+  bool overlapped = false;         ///< both programs at once, loads one interval old
+  double timeout = 300.0;          ///< longest wait for the solid [s]
+  double connect_timeout = 30.0;   ///< how long its program may take to start [s]
 };
 
 /// Something that is measured along the run and written to a table of its own.

@@ -48,8 +48,8 @@ class Observers {
   Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
             const std::string& folder, Log& log, std::int64_t first = 0);
 
-  /// The run stops at this state, which --until may have put before the scene's end: progress counts
-  /// to it.
+  /// The run stops at this state, which --until may have put before the scene's end: progress
+  /// counts to it.
   void ends_at(std::int64_t state) { end_ = state; }
 
   /// What a checkpoint must keep of the observers, complete on rank 0; `load` wants it on every

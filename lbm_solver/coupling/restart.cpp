@@ -41,7 +41,8 @@ constexpr std::array kAcceptable{"fluid.gravity",
                                  "coupling.virtual_mass",
                                  "coupling.inner_inertia",
                                  "coupling.buoyancy"};
-constexpr std::array kOfABoundary{"velocity", "pressure", "profile", "ramp", "frequency", "table", "repeat"};
+constexpr std::array kOfABoundary{"velocity",  "pressure", "profile", "ramp",
+                                  "frequency", "table",    "repeat"};
 
 bool is_or_is_in(const std::string& key, const std::string& table) {
   return key == table || key.starts_with(table + ".");

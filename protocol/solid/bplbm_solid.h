@@ -56,26 +56,26 @@ enum { BPLBM_SERIAL = 0, BPLBM_OVERLAPPED = 1 };
 
 /* What both sides must agree on. */
 typedef struct {
-  int32_t dimension;             /* 2 or 3 */
-  int32_t periodic[3];           /* 0 or 1 an axis; z does not count in two dimensions */
+  int32_t dimension;              /* 2 or 3 */
+  int32_t periodic[3];            /* 0 or 1 an axis; z does not count in two dimensions */
   double box_low[3], box_high[3]; /* [m]; in two dimensions z spans the depth */
-  double depth;                  /* [m], two dimensions only: forces and masses are of this depth */
-  double gravity[3];             /* [m/s^2] */
-  int32_t buoyancy, schedule;    /* see above */
-  double step;                   /* the solid's own time step [s] */
-  int32_t steps;                 /* of them a coupling interval */
-  int32_t checkpoints;           /* 1: the fluid needs them; the solid can write them */
-  int64_t first_interval;        /* 0, or that of the checkpoint from which the run goes on */
-  int64_t particles;             /* of all ranks; -1: not said */
-  double radius[2], density[2];  /* smallest and largest [m], [kg/m^3]; 0, 0: not said */
-  int32_t sides[6];              /* x low, x high, y low … z high: 0 no wall, 1 a wall, 2 a wall
-                                    with openings; -1: not said */
+  double depth;                 /* [m], two dimensions only: forces and masses are of this depth */
+  double gravity[3];            /* [m/s^2] */
+  int32_t buoyancy, schedule;   /* see above */
+  double step;                  /* the solid's own time step [s] */
+  int32_t steps;                /* of them a coupling interval */
+  int32_t checkpoints;          /* 1: the fluid needs them; the solid can write them */
+  int64_t first_interval;       /* 0, or that of the checkpoint from which the run goes on */
+  int64_t particles;            /* of all ranks; -1: not said */
+  double radius[2], density[2]; /* smallest and largest [m], [kg/m^3]; 0, 0: not said */
+  int32_t sides[6];             /* x low, x high, y low … z high: 0 no wall, 1 a wall, 2 a wall
+                                   with openings; -1: not said */
 } bplbm_setup;
 
 /* Motion of a particle at the beginning of a coupling interval. Velocities are those of that time,
  * not of half a step before, as a leapfrog scheme keeps them. */
 typedef struct {
-  int64_t id; /* unique among all ranks; the fluid knows a particle by it alone */
+  int64_t id;                  /* unique among all ranks; the fluid knows a particle by it alone */
   double x[3], v[3], omega[3]; /* [m], [m/s], [rad/s] */
 } bplbm_state;
 
