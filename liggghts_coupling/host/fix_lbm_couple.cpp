@@ -78,6 +78,7 @@ void FixLbmCouple::init() {
                        modify->fix[i]->id, style));
     if (holds) frozen_groups_ |= modify->fix[i]->groupbit;
   }
+  clumps_.find();
   if (Coupling::instance().session->fluid().features & protocol::kCheckpoints) note_particles();
 }
 
@@ -86,8 +87,8 @@ void FixLbmCouple::setup_pre_exchange() {
   count_leaving();
   if (coupling_->setting_up_again()) return;
   const ScriptChecks checks(lmp);
-  checks.refuse_clumps();
-  checks.refuse_overlaps(groupbit);
+  checks.refuse_other_shapes();
+  checks.refuse_overlaps(groupbit, clumps_.carriers());
 }
 
 /// The end of LIGGGHTS' set-up: of a run, or, within one, of `set_up_again`.
@@ -109,7 +110,8 @@ void FixLbmCouple::begin() {
   Coupling& job = Coupling::instance();
   if (job.agreed) fail("was removed and made anew: keep the first one for all runs");
   const protocol::Hello mine = hello();
-  if (*mine.particles > 0) SolidHello(lmp, groupbit, coupling_->substeps()).expect_motion();
+  if (*mine.particles > 0)
+    SolidHello(lmp, groupbit, coupling_->substeps(), clumps_).expect_motion();
   step_ = update->ntimestep;
   time_step_ = update->dt;
   BondBook::instance().first_step =

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "liggghts_coupling/host/script_clumps.h"
 #include "protocol/solid/particle_coupling.h"
 
 namespace dem {
@@ -72,6 +73,10 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
   protocol::Setting setting() const override;
   std::optional<protocol::SolidReport> report() const override;
   int index_of(std::int64_t id) const override;
+  std::vector<protocol::EngineClump> clumps() override { return clumps_.clumps(); }
+  void push_clumps(std::span<const protocol::Load> loads, bool at_end) override {
+    clumps_.push(loads, at_end);
+  }
   void set_up_again() override;
   void write_part(protocol::SolidParts& parts, std::int64_t interval) override;
   void note_wishes(std::uint32_t flags) override;
@@ -88,6 +93,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
   [[noreturn]] void fail(const std::string& text) const;
 
   std::optional<protocol::ParticleCoupling> coupling_;
+  ScriptClumps clumps_{lmp};
   double** held_ = nullptr;        ///< [nmax][kColumns]; force [N], torque [N m], …
   int frozen_groups_ = 0;          ///< whose forces fix freeze or setforce sets
   LAMMPS_NS::bigint step_ = 0;     ///< of the run that ended last

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Clumps as physics. References of slow flow: the drag of two spheres that touch, along their line
+/// of centres [StimsonJeffery1926] and across it [NirAcrivos1973], the orbit of such a pair
+/// [NirAcrivos1973], and of four in a tetrahedron the shell model of
+/// tests/reference/shell_model.py, which gives the pair's numbers to 0.1 %. What a periodic box
+/// adds is Hasimoto's [Hasimoto1959].
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lbm_solver/immersed/resistance.h"
+#include "tests/support/free_clump.h"
+
+namespace {
+
+using namespace lbm;
+using std::numbers::pi;
+using test::clump_coupling;
+using test::FreeClump;
+
+constexpr const char* kTerm = "layered_resistance";
+
+KernelChoice trt(const std::string& lattice, double tau, bool force = false) {
+  KernelChoice choice{.force = force, .solid_term = kTerm};
+  choice.lattice = lattice;
+  choice.parameters.tau = tau;
+  choice.parameters.magic = kResistanceMagic;
+  return choice;
+}
+
+Domain cube(int n) {
+  return {n, n, Side::Periodic, Side::Periodic, n, Side::Periodic};
+}
+
+/// Two that overlap, of different sizes, turned out of the axes of the lattice.
+std::vector<FreeClump::Part> odd_pair() {
+  return {{{-1.6, 0.3, -0.4}, 3.6}, {{2.0, -0.7, 0.9}, 2.8}};
+}
+
+TEST(Clump, OfOneSphereIsTheSphereToTheBit) {
+  for (const int dimension : {2, 3}) {
+    const Domain domain = dimension == 2 ? Domain{40, 36, Side::Periodic, Side::Wall} : cube(20);
+    const double r = 4.3, volume = pi * r * r * (dimension == 2 ? 1.0 : 4.0 / 3.0 * r);
+    protocol::Particle grain{{1, {11.3, 9.2, dimension == 2 ? 0.0 : 8.7}, {0.02, 0.01, 0.0}, {}},
+                             {1, r, 1.4 * volume, 0.4 * 1.4 * volume * r * r, 1}};
+    grain.state.omega[2] = 0.003;
+    protocol::Particle sphere = grain, carrier = grain;
+    sphere.state.id = sphere.shape.id = 2;
+    sphere.shape.mass = sphere.shape.inertia = 0.0;
+    sphere.shape.carrier = 1;
+    carrier.shape.volume = volume;
+    std::vector<protocol::Load> loads[2];
+    for (const bool clump : {false, true}) {
+      Fluid fluid(domain, trt(dimension == 2 ? "D2Q9" : "D3Q19", 0.8));
+      Particles wire = clump_coupling(fluid, kTerm, 1.0, {0.0, -1e-5, 0.0});
+      std::vector<protocol::Particle> all{clump ? carrier : grain};
+      if (clump) all.push_back(sphere);
+      for (int k = 0; k < 20; ++k) {
+        wire.arrive(all, 2.0);
+        for (const double elapsed : {0.0, 1.0}) {
+          fluid.place(wire.bodies(elapsed));
+          fluid.step();
+          wire.add(fluid.loads());
+        }
+        const protocol::Load load = wire.mean_loads(2)[0];
+        loads[clump].push_back(load);
+        for (auto& p : all)
+          for (int a = 0; a < dimension; ++a) {
+            p.state.v[a] += 2.0 * load.force[a] / grain.shape.mass;
+            p.state.x[a] += 2.0 * p.state.v[a];
+          }
+      }
+    }
+    for (std::size_t k = 0; k < loads[0].size(); ++k) {
+      EXPECT_EQ(loads[0][k].force, loads[1][k].force) << dimension << "D, interval " << k;
+      EXPECT_EQ(loads[0][k].torque, loads[1][k].torque) << dimension << "D, interval " << k;
+    }
+  }
+}
+
+TEST(Clump, ThatIsNeutralStaysWhereItIs) {
+  // Weight and buoyancy are of one volume, and a fluid at rest pushes nothing: nothing but
+  // round-off moves it. With buoyancy once a sphere it would rise at g/5.
+  const Vec3 gravity(0.0, -1e-4, 2e-5);
+  Fluid fluid(cube(24), trt("D3Q19", 0.8));
+  Particles wire = clump_coupling(fluid, kTerm, 0.0, gravity);
+  FreeClump clump(odd_pair(), 1.0, {11.7, 12.2, 12.4}, 3);
+  const Vec3 start = clump.place();
+  for (int k = 0; k < 300; ++k) clump.step(wire, fluid, gravity);
+  EXPECT_LT((clump.place() - start).norm(), 1e-9);
+  EXPECT_LT(clump.spin().norm(), 1e-11);
+}
+
+/// Σ momentum of the populations that have arrived.
+Vec3 momentum(const Fluid& fluid) {
+  Vec3 sum;
+  const Cell3 n = fluid.domain().cells();
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) sum += fluid.arrived_momentum(x, y, z);
+  return sum;
+}
+
+TEST(Clump, TakesTheMomentumThatTheFluidLoses) {
+  // What its two spheres take from cells that both cover is the force on it, once: to round-off.
+  Fluid fluid(cube(20), trt("D3Q19", 0.7));
+  Particles wire = clump_coupling(fluid, kTerm);
+  FreeClump clump(odd_pair(), 1.5, {9.3, 10.1, 9.8}, 3);
+  clump.velocity = {0.01, -0.02, 0.005};
+  clump.set_spin({0.002, 0.004, -0.003});
+  for (int k = 0; k < 10; ++k) {
+    const Vec3 before = momentum(fluid);
+    wire.arrive(clump.particles(), 1.0);
+    fluid.place(wire.bodies(0.0));
+    fluid.step();
+    Vec3 force;
+    for (const BodyLoad& load : fluid.momentary_loads()) force += load.force;
+    EXPECT_LT((before - momentum(fluid) - force).norm(), 1e-12) << k;
+    clump.move(Vec3(), Vec3(), 1.0);
+  }
+}
+
+TEST(Clump, CoversACellOnce) {
+  // A sphere in two copies at one place, as one clump, acts as the sphere does.
+  for (const int copies : {1, 2}) {
+    Fluid fluid(cube(20), trt("D3Q19", 0.8));
+    std::vector<Body> bodies(static_cast<std::size_t>(copies));
+    for (Body& body : bodies) {
+      body.id = &body - bodies.data();
+      body.carrier = 7;
+      body.centre = {9.6, 10.3, 10.1};
+      body.radius = 4.2;
+      body.velocity = {0.02, 0.0, 0.01};
+    }
+    Vec3 force;
+    for (int k = 0; k < 20; ++k) {
+      fluid.place(bodies);
+      fluid.step();
+    }
+    for (const BodyLoad& load : fluid.loads()) force += load.force;
+    static Vec3 alone;
+    if (copies == 1) alone = force;
+    EXPECT_LT((force - alone).norm(), 1e-12 * alone.norm()) << copies;
+  }
+}
+
+// ---- slow flow ---------------------------------------------------------------------------------
+
+/// A clump at rest in a periodic box that is driven along all axes: the flux that the drive keeps
+/// up. In the box 1/K = 1/K∞ - 2.837 a/L + 4π/3 (a K∞/L)³ … [Hasimoto1959], K in units of a sphere;
+/// the cubic term is that of a sphere of the same drag.
+Vec3 drag_in_unbounded_fluid(const std::vector<FreeClump::Part>& parts, double a, int n) {
+  const double tau = 1.1, nu = (tau - 0.5) / 3.0, g = 2e-7;
+  Fluid fluid(cube(n), trt("D3Q19", tau, true));
+  fluid.set_body_force({g, g, g});
+  Particles wire = clump_coupling(fluid, kTerm);
+  const FreeClump clump(parts, 1.0, {0.5 * n + 0.13, 0.5 * n - 0.21, 0.5 * n + 0.37}, 3);
+  wire.arrive(clump.particles(), 1.0);
+  fluid.place(wire.bodies(0.0));
+  Vec3 flux, before(1.0, 1.0, 1.0);
+  const double volume = static_cast<double>(n) * n * n;
+  const auto settle = static_cast<int>(0.02 * n * n / nu);
+  while (true) {
+    fluid.advance(settle);
+    flux = momentum(fluid) / volume + 0.5 * fluid.body_force();
+    if ((flux - before).norm() < 1e-4 * flux.norm()) break;
+    before = flux;
+  }
+  Vec3 drag;
+  for (int k = 0; k < 3; ++k) {
+    const double mobility = 6.0 * pi * nu * a * flux[k] / (g * volume);
+    double unbounded = mobility + 2.837297 * a / n;
+    unbounded -= 4.0 * pi / 3.0 * std::pow(a / unbounded / n, 3);
+    drag[k] = 1.0 / unbounded;
+  }
+  return drag;
+}
+
+TEST(Slow_Clump, OfTwoSpheresThatTouchHasTheirDrag) {
+  // 3 %: a sphere of 8 cells alone has 2 % in this box (tests/physics/resistance_test.cpp).
+  const double r = 4.0;
+  const Vec3 drag = drag_in_unbounded_fluid({{{-r, 0, 0}, r}, {{r, 0, 0}, r}}, r, 64);
+  EXPECT_NEAR(drag.x() / (2.0 * 0.6451), 1.0, 0.03);
+  EXPECT_NEAR(drag.y() / (2.0 * 0.7243), 1.0, 0.03);
+  EXPECT_NEAR(drag.z() / (2.0 * 0.7243), 1.0, 0.03);
+  std::printf("drag over that of the pair: %.4f along, %.4f and %.4f across\n", drag.x() / 1.2902,
+              drag.y() / 1.4486, drag.z() / 1.4486);
+}
+
+std::vector<FreeClump::Part> tetrahedron(double r) {
+  const double h = r / std::numbers::sqrt2;
+  return {{{h, h, h}, r}, {{h, -h, -h}, r}, {{-h, h, -h}, r}, {{-h, -h, h}, r}};
+}
+
+TEST(Slow_Clump, OfFourSpheresInATetrahedronHasItsDrag) {
+  const Vec3 drag = drag_in_unbounded_fluid(tetrahedron(4.0), 4.0, 64);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(drag[k] / 1.783, 1.0, 0.03) << k;
+  std::printf("drag over that of the tetrahedron: %.4f %.4f %.4f\n", drag.x() / 1.783,
+              drag.y() / 1.783, drag.z() / 1.783);
+}
+
+/// Torque over 8πμa³ω of a clump that turns about an axis.
+double turning_drag(const std::vector<FreeClump::Part>& parts, double a, const Vec3& axis) {
+  constexpr int n = 48;
+  const double tau = 1.1, nu = (tau - 0.5) / 3.0, omega = 1e-4;
+  Fluid fluid(cube(n), trt("D3Q19", tau));
+  Particles wire = clump_coupling(fluid, kTerm);
+  FreeClump clump(parts, 1.0, {0.5 * n + 0.13, 0.5 * n - 0.21, 0.5 * n + 0.37}, 3);
+  clump.set_spin(omega * axis);
+  double torque = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    wire.arrive(clump.particles(), 1.0);
+    fluid.place(wire.bodies(0.0));
+    fluid.step();
+    wire.add(fluid.loads());
+    torque = -to_vec3(wire.mean_loads(1)[0].torque).dot(axis);
+    clump.set_spin(omega * axis);
+    clump.move(Vec3(), Vec3(), 1.0);
+  }
+  return torque / (8.0 * pi * nu * a * a * a * omega);
+}
+
+TEST(Slow_Clump, TurnsAgainstTheTorqueOfItsShape) {
+  // The pair: 2 × 3/4 ζ(3) about its line of centres [Jeffery1915], 3.740 across; a tetrahedron
+  // 6.01 about every axis (shell model). 3 %; the box adds less than 1 % (4π/3 a_e³/L³).
+  const double r = 4.0;
+  const std::vector<FreeClump::Part> pair{{{-r, 0, 0}, r}, {{r, 0, 0}, r}};
+  const double along = turning_drag(pair, r, {1, 0, 0}), across = turning_drag(pair, r, {0, 0, 1});
+  const double four = turning_drag(tetrahedron(r), r, {0, 1, 0});
+  std::printf("torque over its reference: %.4f along, %.4f across, %.4f tetrahedron\n",
+              along / 1.8031, across / 3.740, four / 6.008);
+  EXPECT_NEAR(along / 1.8031, 1.0, 0.03);
+  EXPECT_NEAR(across / 3.740, 1.0, 0.03);
+  EXPECT_NEAR(four / 6.008, 1.0, 0.03);
+}
+
+}  // namespace
