@@ -3,7 +3,10 @@
 
 #include <map>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
+
+#include "protocol/wire/clumps.h"
 
 namespace lbm {
 namespace {
@@ -31,6 +34,15 @@ GatheredParticles gather_particles(const Decomposition& ranks, std::span<const P
     all.loads.push_back(both.second);
   }
   return all;
+}
+
+void hide_hulls(std::vector<protocol::Particle>& particles) {
+  std::unordered_set<std::int64_t> clumps;
+  for (const auto& p : particles)
+    if (protocol::is_part(p.shape)) clumps.insert(p.shape.carrier);
+  if (clumps.empty()) return;
+  for (auto& p : particles)
+    if (clumps.contains(p.state.id)) p.shape.radius = 0.0;
 }
 
 std::vector<LightLine> share_light(const Decomposition& ranks, std::span<const LightLine> mine) {

@@ -55,6 +55,9 @@ struct GatheredParticles {
 /// On rank 0; elsewhere empty. Without those whose home is outside the box. Collective.
 GatheredParticles gather_particles(const Decomposition& ranks, std::span<const ParticleLine> mine);
 
+/// A clump covers cells by its spheres alone: for those who look at radii, its own is 0.
+void hide_hulls(std::vector<protocol::Particle>& particles);
+
 /// A carrier's part of a load, and what its home alone knows.
 struct LightLine {
   std::int64_t id = 0, home = 0;

@@ -79,6 +79,11 @@ void FixLbmCouple::init() {
     if (holds) frozen_groups_ |= modify->fix[i]->groupbit;
   }
   clumps_.find();
+  if (clumps_.has_rigid() &&
+      Coupling::instance().session->fluid().features & protocol::kCheckpoints)
+    fail(
+        "a fix rigid keeps nothing of its bodies in restart files: leave out run.checkpoint_every "
+        "of the scene, or use fix multisphere");
   if (Coupling::instance().session->fluid().features & protocol::kCheckpoints) note_particles();
 }
 
