@@ -7,17 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "lbm_solver/immersed/solid_fraction.h"
+
 namespace lbm {
 namespace {
 
-/// Gauss points of a unit cell, and their weights.
-struct Point {
-  double at, weight;
-};
-constexpr std::array<Point, 4> kPoints{{{-0.43056815579702629, 0.17392742256872693},
-                                        {-0.16999052179242813, 0.32607257743127307},
-                                        {0.16999052179242813, 0.32607257743127307},
-                                        {0.43056815579702629, 0.17392742256872693}}};
+/// Those at which sphere_fraction and disc_fraction measure: a sphere that is there twice is taken
+/// out to round-off.
+constexpr std::array kPoints{-kGaussPoint, kGaussPoint};
 
 using Part = std::pair<double, double>;
 
@@ -63,20 +60,20 @@ double shared_fraction(const Ball& own, std::span<const Ball> others, bool flat,
   for (int a = 1; a < (flat ? 2 : 3); ++a)
     if (std::abs(own.arm[a]) > std::abs(own.arm[axis])) axis = a;
   const int p = (axis + 1) % (flat ? 2 : 3), q = (axis + 2) % 3;
-  double fraction = 0.0;
-  for (const Point& i : kPoints) {
+  double sum = 0.0;
+  for (const double i : kPoints) {
     Vec3 off;
-    off[p] = i.at;
+    off[p] = i;
     if (flat) {
-      fraction += i.weight * shared_length(own, others, off, axis, parts);
+      sum += shared_length(own, others, off, axis, parts);
       continue;
     }
-    for (const Point& j : kPoints) {
-      off[q] = j.at;
-      fraction += i.weight * j.weight * shared_length(own, others, off, axis, parts);
+    for (const double j : kPoints) {
+      off[q] = j;
+      sum += shared_length(own, others, off, axis, parts);
     }
   }
-  return fraction;
+  return sum / (flat ? 2.0 : 4.0);
 }
 
 Vec3 snapped(const Vec3& centre) {

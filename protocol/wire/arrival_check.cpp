@@ -93,6 +93,7 @@ void ArrivalCheck::shape(const Shape& s, const Shape* known, bool clump,
   if (!positive(s.radius) || (!part && (!positive(s.mass) || !positive(s.inertia))))
     refuse("particle {}: radius {} m, mass {} kg, inertia {} kg m² must be positive (interval {})",
            s.id, s.radius, s.mass, s.inertia, interval);
+  clump = clump && !part;
   if (clump && !positive(s.volume))
     refuse("clump {}: volume {} m³ at interval {}: tell that of the union of its spheres", s.id,
            s.volume, interval);

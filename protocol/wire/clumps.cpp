@@ -81,6 +81,7 @@ void ClumpCheck::volume(std::span<const Particle> particles, const Clump& clump,
 void ClumpCheck::learn(std::span<const Particle> particles, std::span<const std::int64_t> told,
                        std::int64_t interval) {
   const Clumps before = std::exchange(clumps_, find(particles, interval));
+  places(particles, interval);
   const auto is_told = [&](std::size_t i) {
     return std::binary_search(told.begin(), told.end(), particles[i].state.id);
   };
@@ -103,7 +104,6 @@ void ClumpCheck::learn(std::span<const Particle> particles, std::span<const std:
           "clump {} came without its spheres at interval {}: a clump comes whole; one that falls "
           "apart leaves, and its spheres come with other ids",
           p.state.id, interval);
-  places(particles, interval);
 }
 
 void ClumpCheck::places(std::span<const Particle> particles, std::int64_t interval) const {

@@ -247,7 +247,7 @@ TEST(Slow_Clump, OfTwoSpheresTumblesAsAnEllipsoidOfAxisRatio198) {
     const Opening all = Opening::whole(fluid.domain(), side);
     const double speed = 0.5 * ny * shear * (side == SideName::Top ? 1.0 : -1.0);
     fluid.add(std::make_unique<VelocityPatch>(fluid.lattice(), fluid.links(all),
-                                              Vec3(speed, 0.0, 0.0), false, all));
+                                              Vec3(speed, 0.0, 0.0), false, all, InTime{}));
   }
   for (int z = 0; z < nz; ++z)
     for (int y = 0; y < ny; ++y)
