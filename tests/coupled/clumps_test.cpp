@@ -240,4 +240,68 @@ TEST_F(Clumps, OfRigidRefuseCheckpointsWithTheReason) {
                    {"a fix rigid keeps nothing of its bodies in restart files"});
 }
 
+// ---- an engine without LIGGGHTS -----------------------------------------------------------------
+
+constexpr const char* kFlat = R"(title = "clumps of discs"
+[box]
+size = [0.02, 0.03]
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-5
+gravity = [0.0, -9.81]
+velocity_scale = 0.1
+[particles]
+diameter = 0.002
+density = 1500.0
+start = [[0.0098, 0.0152], [0.0041, 0.0221]]
+[particles.variables]
+clump = "-0.001,0,0,0.001:0,0.0002,0,0.001:0.001,0,0,0.001"
+[numerics]
+cell = 0.0002
+[coupling]
+substeps = 3
+timeout = 30.0
+[output]
+probe_every = 0.005
+[run]
+end_time = 0.04
+)";
+
+class ClumpEngine : public testing::Test {
+ protected:
+  JobResult run(const std::string& scene, int fluids, const std::string& out) {
+    folder_.write("scene.toml", scene);
+    const std::string engine =
+        "/usr/bin/python3 " BPLBM_SOURCE_DIR "/tools/engines/python/clump_engine.py";
+    return test::run(mpirun({kLbm + " --progress none --out " + out, fluids}, {engine}),
+                     folder_.path(), 100.0);
+  }
+  std::string probes(const std::string& out) const {
+    return test::read_file(folder_.path() + "/" + out + "/probes.csv");
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ClumpEngine, FallsAlikeOnOneAndTwoRanksOfTheFluid) {
+  test::expect_end(run(kFlat, 1, "one"), 100.0, 0, {});
+  test::expect_end(run(kFlat, 2, "two"), 100.0, 0, {});
+  std::istringstream one(probes("one")), two(probes("two"));
+  std::string a, b;
+  int rows = 0;
+  for (; std::getline(one, a) && std::getline(two, b); ++rows) {
+    std::istringstream left(a), right(b);
+    std::string x, y;
+    while (rows > 0 && std::getline(left, x, ',') && std::getline(right, y, ','))
+      EXPECT_NEAR(std::stod(x), std::stod(y), 1e-8 * std::max(1e-3, std::abs(std::stod(x)))) << a;
+  }
+  EXPECT_GT(rows, 50);  // of two clumps and their six discs
+}
+
+TEST_F(ClumpEngine, OfMarkersIsRefusedWithTheReason) {
+  const std::string scene = test::replaced(
+      kFlat, "cell = 0.0002", "cell = 0.0002\nscheme = \"implicit_immersed_boundary\"");
+  test::expect_end(run(scene, 1, "out"), 30.0, 2,
+                   {"numerics.scheme = implicit_immersed_boundary", "whose spheres overlap"});
+}
+
 }  // namespace
