@@ -6,24 +6,29 @@ adds most to what is filled. In the end all radii grow by one factor, so that th
 surface."""
 
 import argparse
-import importlib.util
 import pathlib
-import sys
 from dataclasses import dataclass
 
 import numpy as np
 
+from .project import tool
 from .shapes import read_stl
 
-_package = pathlib.Path(__file__).resolve().parents[2] / "protocol" / "python" / "bplbm_solid" / "clump.py"
-
-
-def union_moments(centres, radii):
-    """The one of bplbm_solid, without the rest of that package, which needs MPI."""
-    source = _package.read_text().replace("from .records import SHAPE, STATE", "SHAPE = STATE = None")
-    module = type(sys)("bplbm_clump")
-    exec(compile(source, str(_package), "exec"), module.__dict__)
-    return module.union_moments(centres, radii)
+def union_moments(centres, radii, across=160):
+    """Volume of a union of spheres, its centroid, and the mean of x xᵀ, by points: to 1e-4."""
+    lo, hi = (centres - radii[:, None]).min(0), (centres + radii[:, None]).max(0)
+    step = (hi - lo).max() / across
+    axes = [np.arange(lo[k] + 0.5 * step, hi[k] + 0.5 * step, step) for k in range(3)]
+    count, first, second = 0, np.zeros(3), np.zeros((3, 3))
+    for z in axes[2]:
+        layer = np.stack(np.meshgrid(axes[0], axes[1], [z], indexing="ij"), -1).reshape(-1, 3)
+        held = np.zeros(len(layer), bool)
+        for centre, radius in zip(centres, radii):
+            if abs(z - centre[2]) < radius:
+                held |= ((layer - centre)**2).sum(1) < radius**2
+        layer = layer[held]
+        count, first, second = count + len(layer), first + layer.sum(0), second + layer.T @ layer
+    return count * step**3, first / count, second / count
 
 
 @dataclass
@@ -137,9 +142,9 @@ def fill(corners, count, fineness=40):
 def grown(centres, radii, volume):
     """Radii times the factor with which the union has that volume."""
     low, high = 0.8, 1.6
-    for _ in range(30):
+    for _ in range(16):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if union_moments(centres, middle * radii)[0] < volume else (low, middle)
+        low, high = (middle, high) if union_moments(centres, middle * radii, 100)[0] < volume else (low, middle)
     return 0.5 * (low + high) * radii
 
 
@@ -154,7 +159,7 @@ def report(mesh, clump):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="tools/make_clump", description=__doc__,
+    parser = argparse.ArgumentParser(prog=tool("make_clump"), description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("mesh", type=pathlib.Path, help="a closed surface, .stl")
     parser.add_argument("spheres", type=int, help="how many")
