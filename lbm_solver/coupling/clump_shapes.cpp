@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "lbm_solver/base/errors.h"
 #include "protocol/wire/ball_union.h"
 
 namespace lbm {
@@ -86,6 +87,15 @@ ClumpShapes::Placed ClumpShapes::place(const protocol::Shape& clump,
 void ClumpShapes::keep_placed() {
   std::erase_if(known_, [](const auto& entry) { return !entry.second.placed; });
   for (auto& [id, known] : known_) known.placed = false;
+}
+
+void expect_takes_clumps(SolidScheme scheme) {
+  if (scheme != SolidScheme::ImplicitImmersedBoundary &&
+      scheme != SolidScheme::SpringImmersedBoundary)
+    return;
+  throw InputError("numerics.scheme = " + name_of(scheme),
+                   "cannot take the solid's clumps, whose spheres overlap",
+                   "choose immersed_moving_boundary or bounce_back");
 }
 
 }  // namespace lbm

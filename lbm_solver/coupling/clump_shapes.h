@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lbm_solver/coupling/carrier.h"
+#include "lbm_solver/immersed/body_scheme.h"
 
 namespace lbm {
 
@@ -41,5 +42,9 @@ class ClumpShapes {
   double depth_;
   std::unordered_map<std::int64_t, Known> known_;  // [carrier]
 };
+
+/// Markers on the surface of a sphere would force the fluid inside the others, too.
+/// @throws InputError
+void expect_takes_clumps(SolidScheme scheme);
 
 }  // namespace lbm

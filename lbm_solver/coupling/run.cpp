@@ -178,7 +178,7 @@ class CoupledRun {
         stands_at_.reset();
       particles_.arrive(arrival.particles, plan_.interval());
       particles_.tell(arrival.report);
-      if (particles_.has_clumps()) expect_scheme_for_clumps();
+      if (particles_.has_clumps()) expect_takes_clumps(plan_.scheme);
       if (scene_.coupling->carry_weight) carry_weight(interval);
       place(0);
       observers_.at_state(interval, fluid_, &particles_, last);
@@ -193,16 +193,6 @@ class CoupledRun {
       observers_.after_interval(interval, fluid_, &particles_);
       clock_.charge("output");
     }
-  }
-
-  /// Markers on the surface of a sphere would force the fluid inside the others, too.
-  void expect_scheme_for_clumps() const {
-    if (plan_.scheme != SolidScheme::ImplicitImmersedBoundary &&
-        plan_.scheme != SolidScheme::SpringImmersedBoundary)
-      return;
-    throw InputError(fmt::format("numerics.scheme = {}", name_of(plan_.scheme)),
-                     "cannot take the solid's clumps, whose spheres overlap",
-                     "choose immersed_moving_boundary or bounce_back");
   }
 
   /// The force on the fluid that carries the particles' weight, anew where their number changes.

@@ -93,6 +93,8 @@ void FixLbmCouple::setup_pre_exchange() {
   if (coupling_->setting_up_again()) return;
   const ScriptChecks checks(lmp);
   checks.refuse_other_shapes();
+  if (clumps_.in_part(groupbit))
+    fail("its group holds some spheres of clumps and leaves others out; give it all of them");
   checks.refuse_overlaps(groupbit, clumps_.carriers());
 }
 

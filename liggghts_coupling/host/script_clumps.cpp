@@ -85,6 +85,15 @@ const std::int64_t* ScriptClumps::carriers() const {
   return carriers_.data();
 }
 
+bool ScriptClumps::in_part(int groupbit) const {
+  int found[2] = {0, 0};  // spheres of clumps outside of the group, in it
+  const std::int64_t* const carrier = carriers();
+  for (int i = 0; carrier && i < atom->nlocal; ++i)
+    if (carrier[i] != protocol::kItself) found[(atom->mask[i] & groupbit) != 0] = 1;
+  MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, world);
+  return found[0] == 1 && found[1] == 1;
+}
+
 std::vector<EngineClump> ScriptClumps::clumps() const {
   std::vector<EngineClump> clumps;
   if (multisphere_) add_multisphere(clumps);
@@ -106,6 +115,7 @@ void ScriptClumps::add_multisphere(std::vector<EngineClump>& clumps) const {
     clump.mass = data.mass(b);
     clump.inertia = (inertia[b][0] + inertia[b][1] + inertia[b][2]) / 3.0;
     clump.volume = data.volume(b);
+    clump.spheres = data.nrigid(b);
   }
 }
 
@@ -118,6 +128,7 @@ void ScriptClumps::add_rigid(std::size_t number, std::vector<EngineClump>& clump
     clump.v = vector((fix.*Inside::velocity)[b]);
     clump.omega = vector((fix.*Inside::spin)[b]);
     clump.mass = (fix.*Inside::mass)[b];
+    clump.spheres = (fix.*Inside::spheres)[b];
     const double* principal = (fix.*Inside::principal)[b];
     const double z[] = {(fix.*Inside::axis_x)[b][2], (fix.*Inside::axis_y)[b][2],
                         (fix.*Inside::axis_z)[b][2]};

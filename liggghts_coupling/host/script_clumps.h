@@ -31,6 +31,8 @@ class ScriptClumps : protected LAMMPS_NS::Pointers {
 
   /// Of each local particle the clump that it belongs to; null where there are no clumps.
   const std::int64_t* carriers() const;
+  /// Some of their spheres are in a group, some are not. Collective.
+  bool in_part(int groupbit) const;
   /// Those that this rank answers for.
   std::vector<protocol::EngineClump> clumps() const;
   /// Adds loads of all ranks' clumps. @param at_end  see protocol::Engine::push_clumps

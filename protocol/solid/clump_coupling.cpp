@@ -49,7 +49,7 @@ ClumpCoupling::Known ClumpCoupling::measure(const Hello& box, const EngineClump&
   std::vector<Ball> balls;
   for (const EngineSphere& s : spheres) balls.push_back({s.id, arm(box, clump.x, s.x), s.radius});
   const bool told = clump.volume > 0.0;
-  return {spheres.size(), bounding_radius(balls),
+  return {bounding_radius(balls),
           told ? clump.volume : moments_of_union(balls, box.dimension, box.depth).volume};
 }
 
@@ -63,10 +63,9 @@ void ClumpCoupling::gather(MPI_Comm comm, const Hello& box, std::span<const Engi
         std::equal_range(all.begin(), all.end(), EngineSphere{.carrier = clump.id},
                          [](const auto& a, const auto& b) { return a.carrier < b.carrier; });
     const std::span<const EngineSphere> own(first, last);
-    if (own.empty()) continue;  // not in the group that couples
+    if (static_cast<int>(own.size()) < clump.spheres || own.empty()) continue;
     const auto before = known_.find(clump.id);
-    const bool same = before != known_.end() && before->second.spheres == own.size();
-    const Known k = same ? before->second : measure(box, clump, own);
+    const Known k = before != known_.end() ? before->second : measure(box, clump, own);
     known.emplace(clump.id, k);
     records.states.push_back({clump.id, clump.x, clump.v, clump.omega});
     records.shapes.push_back(

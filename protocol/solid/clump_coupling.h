@@ -24,6 +24,8 @@ struct EngineClump {
   double mass = 0.0;
   double inertia = 0.0;  ///< a third of the trace of its tensor, in two dimensions about z
   double volume = 0.0;   ///< that it displaces; 0: the union of its spheres is measured
+  /// How many spheres it has. One that lacks some has begun to leave the box, and is not sent.
+  int spheres = 0;
 };
 
 /// A sphere of a clump, on the rank that holds it.
@@ -58,7 +60,6 @@ class ClumpCoupling {
  private:
   /// What is found out once of a clump: the same in every later interval.
   struct Known {
-    std::size_t spheres = 0;
     double radius = 0.0, volume = 0.0;
   };
   Known measure(const Hello& box, const EngineClump& clump, std::span<const EngineSphere> spheres);

@@ -87,8 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "fix              move all nve/sphere",
                     "create_atoms 1 single 0.0116 0.04 0.0 units box\nset type 1 diameter "
                     "${diameter_max} density ${disc_density}\nfix move all rigid single",
-                    {"density", "scene's particles.density says 1250 … 1250",
-                     "kg in"}},
+                    {"density", "scene's particles.density says 1250 … 1250", "kg in"}},
         ScriptFault{
             "heap",
             kRun,
