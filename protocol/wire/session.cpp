@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <unordered_set>
 #include <utility>
 
 #include "protocol/wire/agreement.h"
@@ -101,6 +102,7 @@ FluidSession::FluidSession(Channel& channel, Hello hello, double timeout)
     : channel_(channel),
       mine_(std::move(hello)),
       check_(mine_),
+      clumps_(mine_),
       timeout_(timeout),
       next_interval_(mine_.first_interval),
       order_(channel.remote_size()) {
@@ -148,10 +150,15 @@ const Arrival& FluidSession::receive() {
 /// @return ids of the shapes that came, in order
 std::vector<std::int64_t> FluidSession::learn_shapes(const std::vector<StateBatch>& batches) {
   std::vector<std::int64_t> told;
+  std::unordered_set<std::int64_t> named;  // carriers of spheres that are told now
+  for (const StateBatch& batch : batches)
+    for (const Shape& shape : batch.shapes)
+      if (is_part(shape)) named.insert(shape.carrier);
   for (const StateBatch& batch : batches)
     for (const Shape& shape : batch.shapes) {
       const auto known = shapes_.find(shape.id);
-      check_.shape(shape, known == shapes_.end() ? nullptr : &known->second, next_interval_);
+      const bool clump = clumps_.is_clump(shape.id) || named.contains(shape.id);
+      check_.shape(shape, known == shapes_.end() ? nullptr : &known->second, clump, next_interval_);
       told.push_back(shape.id);
       shapes_[shape.id] = shape;
     }
@@ -175,6 +182,7 @@ bool FluidSession::merge_as_before(const std::vector<StateBatch>& batches) {
       check_.next_state(batches[r].states[i], particle.shape, particle.state, next_interval_);
       particle.state = batches[r].states[i];
     }
+  if (!clumps_.none()) clumps_.places(arrival_.particles, next_interval_);
   return true;
 }
 
@@ -209,7 +217,7 @@ void FluidSession::check_states(std::span<const Particle> before,
   lightest_ = std::numeric_limits<double>::infinity();
   auto old = before.begin();
   for (const Particle& now : arrival_.particles) {
-    lightest_ = std::min(lightest_, now.shape.mass);
+    if (!is_part(now.shape)) lightest_ = std::min(lightest_, now.shape.mass);
     while (old != before.end() && old->state.id < now.state.id) ++old;
     const bool same =
         old != before.end() && old->state.id == now.state.id && old->shape.epoch == now.shape.epoch;
@@ -219,7 +227,9 @@ void FluidSession::check_states(std::span<const Particle> before,
       check_.first_state(now, next_interval_);
     is_new.push_back(std::binary_search(told.begin(), told.end(), now.state.id));
   }
-  if (!told.empty()) check_.overlaps(arrival_.particles, is_new, next_interval_);
+  clumps_.learn(arrival_.particles, told, next_interval_);
+  const auto is_clump = [this](std::int64_t id) { return clumps_.is_clump(id); };
+  if (!told.empty()) check_.overlaps(arrival_.particles, is_new, is_clump, next_interval_);
 }
 
 void FluidSession::merge(const std::vector<StateBatch>& batches) {
@@ -350,10 +360,13 @@ void SolidSession::send_states(int rank, const StepHeader& head, std::span<const
   std::vector<Shape>& told = told_[rank];
   std::unordered_map<std::int64_t, Shape> others;  // told before; only where the order has changed
   bool in_order = true;
+  const bool clumps = std::ranges::any_of(shapes, is_part);
+  const std::vector<std::size_t> by = clumps ? routed_by(shapes) : std::vector<std::size_t>();
   sent_[rank].clear();
   for (std::size_t i = 0; i < states.size(); ++i) {
     const State& state = states[i];
-    if (!touches(fluid_[rank], state.x, shapes[i].radius)) {
+    const std::size_t whole = clumps ? by[i] : i;
+    if (!touches(fluid_[rank], states[whole].x, shapes[whole].radius)) {
       if (astray(fluid_[rank], state.x)) refuse_astray(state, head.interval);
       continue;
     }
