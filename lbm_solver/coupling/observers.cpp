@@ -95,12 +95,15 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
                     flat ? "time [s],x [m],y [m],pressure [Pa],ux [m/s],uy [m/s]"
                          : "time [s],x [m],y [m],z [m],pressure [Pa],ux [m/s],uy [m/s],uz [m/s]",
                     keep);
+  if (scene.fluid.flow)
+    flow_.emplace(folder + "/flow.csv",
+                  "time [s],flow [m3/s],wanted [m3/s],pressure_gradient [Pa/m]", keep);
   if (field_times_) fields_.emplace(folder, plan.units, scene.box.dimension, keep);
 }
 
 std::int64_t Observers::next_look(std::int64_t state) const {
   std::int64_t next = (state / guard_every_ + 1) * guard_every_;
-  if (obstacles_ || !scene_.output.points.empty())
+  if (obstacles_ || scene_.fluid.flow || !scene_.output.points.empty())
     next = std::min(next, probe_times_.next(state + 1));
   if (field_times_) next = std::min(next, field_times_->next(state + 1));
   if (average_) next = std::min(next, average_->next(state + 1));
@@ -116,6 +119,7 @@ void Observers::at_state(std::int64_t state, Fluid& fluid, const Particles* part
     write_fields(time_of(state), fluid, particles);
   if (last || probe_times_.due(state)) {
     write_points(time_of(state), fluid);
+    if (scene_.fluid.flow) write_flow(time_of(state), fluid);
     if (obstacles_) obstacles_->write(time_of(state));
   }
   measure(state, fluid, last);
@@ -195,6 +199,22 @@ void Observers::write_points(double time, Fluid& fluid) {
       points_->row({time, x.x(), x.y(), x.z(), pressure, u.x(), u.y(), u.z()});
   }
   if (points_) points_->flush();
+}
+
+void Observers::write_flow(double time, const Fluid& fluid) {
+  const FlowControl& control = *fluid.flow_control();
+  const int axis = control.axis();
+  double area = scene_.box.dimension == 2 ? scene_.box.depth : 1.0;
+  for (int k = 0; k < scene_.box.dimension; ++k)
+    if (k != axis) area *= scene_.box.size[k];
+  const double to_flow = plan_.units.velocity() * area;
+  held_flow_ = {
+      mean_velocity(fluid, axis) * to_flow,
+      control.force() * plan_.units.dx / (plan_.units.dt * plan_.units.dt) * scene_.fluid.density};
+  if (!flow_) return;
+  flow_->row({time, held_flow_->flow, control.wanted(fluid.steps()) * to_flow,
+              held_flow_->pressure_gradient});
+  flow_->flush();
 }
 
 /// Looks at every cell of a state.
@@ -288,13 +308,17 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   frame.ny = plan_.domain.ny;
   frame.nz = plan_.domain.nz;
   const auto nx = static_cast<std::size_t>(n[0]);
-  std::vector<double> rho(nx), u[3];
+  std::vector<double> rho(nx), u[3], nu(nx);
   for (auto& component : u) component.assign(nx, 0.0);
+  const double viscosity = plan_.units.dx * plan_.units.dx / plan_.units.dt;
   std::vector<float> arrived;  // momentum [nz][ny][nx][3]
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y) {
       fluid.row(y, z, rho, {u[0], u[1], u[2]});
+      if (scene_.output.viscosity) row_viscosity(fluid, plan_.kernel.parameters, y, z, nu);
       for (int x = 0; x < n[0]; ++x) {
+        if (scene_.output.viscosity)
+          frame.viscosity.push_back(static_cast<float>(nu[x] * viscosity));
         if (fluid.cover())
           for (const double component : fluid.arrived_momentum(x, y, z))
             arrived.push_back(static_cast<float>(component));
@@ -314,6 +338,7 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   }
   frame.pressure = ranks_.gather(std::move(frame.pressure), 1);
   frame.velocity = ranks_.gather(std::move(frame.velocity), 3);
+  if (scene_.output.viscosity) frame.viscosity = ranks_.gather(std::move(frame.viscosity), 1);
   if (fluid.has_solids()) frame.solid_fraction = ranks_.gather(std::move(frame.solid_fraction), 1);
   if (particles) add_particles(*particles, frame);
   if (fields_) fields_->write(frame);
@@ -363,6 +388,10 @@ Summary Observers::summary(double wall_seconds) const {
                   {"box_x", scene_.box.size.x()},
                   {"box_y", scene_.box.size.y()},
                   {"velocity_scale", scene_.fluid.velocity_scale}};
+  if (held_flow_) {
+    s.parameters["flow"] = held_flow_->flow;
+    s.parameters["pressure_gradient"] = held_flow_->pressure_gradient;
+  }
   if (viscosity_) {
     s.parameters["share_at_rest_bound"] = viscosity_->at_rest_bound;
     s.parameters["share_at_shear_bound"] = viscosity_->at_shear_bound;

@@ -12,6 +12,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/obstacle_reader.h"
+#include "lbm_solver/io/profile_reader.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
 #include "lbm_solver/viscosity/viscosity_law.h"
@@ -173,6 +174,22 @@ TimeTableScene read_time_table(TableReader& t, const std::string& key, const std
   return table;
 }
 
+std::optional<FlowScene> read_flow(TableReader& t, int d) {
+  std::vector<std::string> axes{"x", "y", "z"};
+  axes.resize(d);
+  FlowScene flow;
+  const auto rate = t.optional_number("flow_rate", {}, "m³/s");
+  flow.axis = t.choice_or("flow_axis", "x", axes)[0] - 'x';
+  flow.ramp = t.number_or("flow_ramp", 0.0, Bounds::non_negative(), "s");
+  if (!rate) {
+    for (const char* key : {"flow_axis", "flow_ramp"})
+      if (t.has(key)) t.fail(key, "has no meaning without flow_rate", "leave it out");
+    return {};
+  }
+  flow.rate = *rate;
+  return flow;
+}
+
 FluidScene read_fluid(TableReader t, int d, const std::string& scene_file) {
   FluidScene fluid;
   fluid.density = t.number("density", Bounds::positive(), "kg/m³");
@@ -193,6 +210,7 @@ FluidScene read_fluid(TableReader t, int d, const std::string& scene_file) {
   fluid.body_force_table =
       read_time_table(t, "body_force_table",
                       t.choice_or("body_force_repeat", "once", {"once", "periodic"}), scene_file);
+  fluid.flow = read_flow(t, d);
   for (const char* key : {"body_force_frequency", "body_force_table"})
     if (t.has(key) && fluid.body_force.norm() == 0.0)
       t.fail(key, "stands beside a body_force of zero", "give body_force, or leave it out");
@@ -325,6 +343,9 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::strin
   if (b.kind == Kind::Velocity) {
     b.velocity = t.vector("velocity", box.dimension, "[m/s]");
     b.parabolic = t.choice_or("profile", "uniform", {"uniform", "parabolic"}) == "parabolic";
+    b.profile = read_profile(t, b.side, box.dimension, scene_file);
+    if (b.parabolic && !b.profile.factors.empty())
+      t.fail("profile_table", "stands beside profile = \"parabolic\"", "give one of them");
     if (kind == "moving_wall" && b.velocity[axis] != 0.0)
       t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
   } else {
@@ -503,6 +524,7 @@ Scene read_tables(const toml::table& merged, const std::vector<std::string>& fil
   settle_viscosity(root, scene);
   TableReader output = root.optional_table("output");
   scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
+  scene.output.viscosity = output.flag_or("viscosity", false);
   scene.output.probe_every = output.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
   scene.output.points = output.vectors_or_none("points", d, "[m]");
   scene.output.probe_particles = read_probe_particles(output);

@@ -57,6 +57,11 @@ void Fluid::vary_body_force(const InTime& in_time) {
   set_body_force();
 }
 
+void Fluid::hold_flow(const FlowControl& control) {
+  BPLBM_EXPECT(choice_.force);
+  flow_ = control;
+}
+
 void Fluid::set_body_force(const Vec3& force) {
   BPLBM_EXPECT(choice_.force);
   CollisionParameters& p = choice_.parameters;
@@ -75,6 +80,10 @@ void Fluid::set_body_force() {
        {&CollisionParameters::force_x, &CollisionParameters::force_y,
         &CollisionParameters::force_z})
     now.parameters.*component *= part;
+  if (flow_) {
+    CollisionParameters& p = now.parameters;
+    (flow_->axis() == 0 ? p.force_x : flow_->axis() == 1 ? p.force_y : p.force_z) += flow_->force();
+  }
   kernel_ = make_kernel(now);
   medium_.parameters = now.parameters;
   if (scheme_) scheme_->set_body_force(body_force());
@@ -194,11 +203,23 @@ void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
 }
 
 void Fluid::make_steps(std::int64_t steps, const AfterStep& after_each) {
-  for (; steps > 0 && force_in_time_.changes_after(steps_); --steps) {
-    make_steps_under_force(1, after_each);
+  while (steps > 0) {
+    const bool changes = force_in_time_.changes_after(steps_);
+    const std::int64_t now = changes ? 1 : steps, made = flow_ ? adjust_flow(now) : now;
+    make_steps_under_force(made, after_each);
+    if (changes) set_body_force();
+    steps -= made;
+  }
+}
+
+/// Finds the force that holds the flow, where it is time. @return how many of the coming steps it
+/// stays for
+std::int64_t Fluid::adjust_flow(std::int64_t steps) {
+  if (flow_->due(steps_)) {
+    flow_->adjust(steps_, mean_velocity(*this, flow_->axis()));
     set_body_force();
   }
-  if (steps > 0) make_steps_under_force(steps, after_each);
+  return std::min(steps, flow_->until_next(steps_));
 }
 
 void Fluid::make_steps_under_force(std::int64_t steps, const AfterStep& after_each) {
@@ -423,6 +444,7 @@ Record Fluid::save() const {
   for (std::size_t i = 0; i < patches_.size(); ++i)
     record.set("boundary" + std::to_string(i + 1), save_boundary(i));
   if (scheme_) record.set("scheme", scheme_->save());
+  if (flow_) record.set("flow", flow_->save());
   if (two_steps_.on()) {
     TwoStepLoads last = two_steps_;
     if (loads_are_new_) last.remember(bodies_, cover_->loads());
@@ -440,6 +462,7 @@ void Fluid::load(const Record& record) {
   for (std::size_t i = 0; i < patches_.size(); ++i)
     load_boundary(i, record.part("boundary" + std::to_string(i + 1)));
   if (scheme_) scheme_->load(record.part("scheme"));
+  if (flow_) flow_->load(record.part("flow"));
   if (two_steps_.on()) {
     two_steps_.load(record.part("loads"));
     if (!fixed_.empty()) fixed_two_steps_.load(record.part("fixed_loads"));
@@ -453,7 +476,7 @@ void Fluid::load(const Record& record) {
   populations = ranks_->scatter(std::move(populations), lattice().Q);
   steps_ = record.integer("steps");
   stream_.set_odd(record.integer("odd") != 0);
-  if (force_in_time_.changes_after(0)) set_body_force();
+  if (force_in_time_.changes_after(0) || flow_) set_body_force();
   each_cell(n, [&](std::size_t number, int x, int y, int z) {
     for (int q = 0; q < lattice().Q; ++q) arriving(q, x, y, z) = populations[number * q_count + q];
   });

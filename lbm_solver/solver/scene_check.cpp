@@ -207,9 +207,10 @@ std::pair<double, std::string> given_speed(const Scene& s) {
     if (speed > largest.first) largest = {speed, what};
   };
   for (const BoundaryScene& b : s.boundaries)
-    look(b.velocity.norm() * b.table.largest(), "boundary.velocity");
+    look(b.velocity.norm() * b.table.largest() * b.profile.largest(), "boundary.velocity");
   for (const ObstacleScene& o : s.obstacles)
     look(0.5 * o.diameter * o.spin.norm(), "an obstacle's spin");
+  look(mean_speed(s), "fluid.flow_rate");
   return largest;
 }
 
@@ -226,6 +227,25 @@ void check_speed(const Scene& s, Plan& plan) {
                     what, speed, s.fluid.velocity_scale));
 }
 
+/// Mean factor of a velocity over a boundary.
+double mean_factor(const Scene& s, const BoundaryScene& b) {
+  if (b.parabolic) return std::pow(2.0 / 3.0, s.box.dimension - 1);
+  if (b.profile.factors.empty()) return 1.0;
+  constexpr int parts = 200;  // along each axis
+  const SideProfile profile{b.profile.places, b.profile.factors};
+  double sum = 0.0;
+  for (int i = 0; i < parts * parts; ++i) {
+    std::array<double, 2> at{};
+    for (int k = 0; k < s.box.dimension - 1; ++k) {
+      const Range part = extent(s, b, k);
+      const int number = k == 0 ? i % parts : i / parts;
+      at[k] = part.lo + (number + 0.5) / parts * (part.hi - part.lo);
+    }
+    sum += profile.factor(at);
+  }
+  return sum / (parts * parts);
+}
+
 /// What the velocity boundaries bring in, less what they take out, over the sum of both.
 double surplus(const Scene& s) {
   double sum = 0.0, all = 0.0;
@@ -233,8 +253,9 @@ double surplus(const Scene& s) {
     double flow = b.velocity[axis_of(b.side)] * (is_high(b.side) ? -1.0 : 1.0);
     for (int k = 0; k < s.box.dimension - 1; ++k) {
       const Range part = extent(s, b, k);
-      flow *= (part.hi - part.lo) * (b.parabolic ? 2.0 / 3.0 : 1.0);
+      flow *= part.hi - part.lo;
     }
+    flow *= mean_factor(s, b);
     sum += flow;
     all += std::abs(flow);
   }
@@ -290,6 +311,8 @@ void check_frequencies(const Scene& s, Plan& plan) {
 
 /// Keys that have no effect in this scene.
 void check_idle_keys(const Scene& s, Plan& plan) {
+  if (s.output.viscosity && !plan.kernel.local_viscosity())
+    plan.warnings.push_back("output.viscosity writes a viscosity that is the same everywhere");
   if (s.fluid.body_force_ramp > s.end_time)
     plan.warnings.push_back(
         fmt::format("fluid.body_force_ramp = {:.4g} s is longer than the run: the force reaches "
@@ -300,6 +323,11 @@ void check_idle_keys(const Scene& s, Plan& plan) {
   if (s.numerics.weight != "auto" && by_resistance(plan.kernel.solid_term))
     plan.warnings.push_back(fmt::format("numerics.weight = \"{}\" has no effect: {} has no weight",
                                         s.numerics.weight, plan.kernel.solid_term));
+}
+
+/// A body force of its own carries the particles' weight along an axis.
+bool carried(const Scene& s, int axis) {
+  return (s.coupling && s.coupling->carry_weight) || (s.fluid.flow && s.fluid.flow->axis == axis);
 }
 
 /// Gravity that points upwards, or that nothing holds.
@@ -313,7 +341,7 @@ void check_gravity(const Scene& s, Plan& plan) {
       s.particles->density.lo == s.fluid.density && s.particles->density.hi == s.fluid.density;
   for (int k = 0; k < s.box.dimension && !neutral; ++k)
     if (g[k] != 0.0 && s.box.sides[k] == SideKind::Periodic && s.fluid.body_force[k] == 0.0 &&
-        s.box.pressure_jump[k] == 0.0)
+        !carried(s, k) && s.box.pressure_jump[k] == 0.0)
       plan.warnings.push_back(
           fmt::format("fluid.gravity acts along {0}, where the box is periodic and nothing holds "
                       "the particles: they take the fluid along, faster and faster; take "
@@ -404,6 +432,27 @@ void check_output(const Scene& s, Plan& plan) {
                     s.output.fields_every, frames, 1e-9 * bytes));
 }
 
+/// The body force is free to give a flow where nothing else drives it, or holds it.
+void check_flow(const Scene& s) {
+  if (!s.fluid.flow) return;
+  const int axis = s.fluid.flow->axis;
+  const std::string key = s.file + ": fluid.flow_rate";
+  if (s.box.sides[axis] != SideKind::Periodic)
+    throw InputError(
+        key,
+        fmt::format("goes along {0}, and sides_{0} are walls: nothing can flow there", "xyz"[axis]),
+        fmt::format("make box.sides_{} \"periodic\", give another fluid.flow_axis, or a "
+                    "[[boundary]] velocity whose flow is known",
+                    "xyz"[axis]));
+  if (s.box.pressure_jump[axis] != 0.0 || s.fluid.body_force[axis] != 0.0)
+    throw InputError(
+        key,
+        fmt::format("stands beside {} along {}, and finds the force itself",
+                    s.fluid.body_force[axis] != 0.0 ? "fluid.body_force" : "box.pressure_jump",
+                    "xyz"[axis]),
+        "leave one of them out");
+}
+
 /// A force can carry the weight only where nothing else does.
 void check_carried_weight(const Scene& s) {
   if (!s.coupling || !s.coupling->carry_weight) return;
@@ -446,6 +495,7 @@ void check_starts_in_shapes(const Scene& s, const Plan& plan) {
 
 void check_places(const Scene& s) {
   check_carried_weight(s);
+  check_flow(s);
   if (s.particles) {
     check_particles(s);
     check_starts(s);

@@ -52,6 +52,24 @@ def rest(runs):
     return bool(speed <= 1e-10), f"{speed:.0e}"
 
 
+def gel_flow(mean, tolerance):
+    """Mean velocity [m/s] of a fluid alone in a channel at the end, within a part of it."""
+    def judge(runs):
+        run = runs[0]
+        error = run.frame(run.frames()[-1][1])["velocity"][..., 0].mean() / mean - 1
+        return bool(abs(error) <= tolerance), f"{100 * error:+.2g} %"
+    return judge
+
+
+def held(runs):
+    """A disc's speed at the end over Stokes' for a sphere in its mud at rest, nu_max, the first run's; that of a second one, which
+    nothing holds, over it: the first creeps with at most half of it (walls and a disc make it less), the second is ten times faster."""
+    first, second = (abs(run.probes()["vy"][-1]) for run in runs)
+    p = runs[0].parameters
+    creep = (p["particle_density"] / p["density"] - 1) * -p["gravity_y"] * p["diameter"]**2 / (18 * 7.4e-3)
+    return bool(first <= creep and second >= 10 * first), f"{first / creep:.2g} {second / first:.0f}×"
+
+
 def overshoot(runs):
     """Of the highest pressure over that of the inlet: 10 %."""
     run = runs[0]
