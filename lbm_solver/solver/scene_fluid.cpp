@@ -225,7 +225,6 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
       in_time(p, s.fluid.body_force_ramp, s.fluid.body_force_frequency, s.fluid.body_force_table);
   if (force.changes_after(0)) fluid.vary_body_force(force);
   if (s.fluid.flow) fluid.hold_flow(flow_control(s, p));
-  fluid.prepare_walls();
   if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
   if (s.initial.kind == InitialScene::Kind::Rest && !p.kernel.force) return fluid;
   const Block& cells = ranks.cells();

@@ -201,14 +201,18 @@ double sphere_drag(double index, double radius) {
   fluid.place(std::vector<Body>{{1, centre, radius, {speed, 0.0, 0.0}},
                                 {2, centre, 4.0 * radius, Vec3(), Spin(), true}});
   const double stokes = 3.0 * pi * nu * 2.0 * radius * speed;
-  return settled(fluid, 8000, [&] { return -fluid.loads()[0].force.x(); }) / stokes;
+  return settled(fluid, 3000, [&] { return -fluid.loads()[0].force.x(); }) / stokes;
 }
 
 // The references are those of a variational solution of the same problem (docs/viscosity.md); 5 %
 // is what is asked for at ten cells across.
 TEST(Sphere, DragInAPowerLawFluid) {
+  EXPECT_NEAR(sphere_drag(0.5, 5.0) / 1.7104, 1.0, 0.05);
+}
+
+TEST(Sphere, Slow_DragInPowerLawFluids) {
   const std::pair<double, double> cases[]{
-      {1.5, 2.4844}, {1.0, 2.1049}, {0.8, 1.9501}, {0.5, 1.7104}, {0.3, 1.5421}};
+      {1.5, 2.4844}, {1.0, 2.1049}, {0.8, 1.9501}, {0.3, 1.5421}};
   for (const auto& [index, exact] : cases)
     EXPECT_NEAR(sphere_drag(index, 5.0) / exact, 1.0, 0.05) << "n = " << index;
 }
