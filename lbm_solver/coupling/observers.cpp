@@ -85,6 +85,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
     field_times_.emplace(scene.output.fields_every, plan.interval());
   const bool flat = scene.box.dimension == 2;
   if (!scene.obstacles.empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
+  if (scene.fluid.flow) flow_.emplace(scene, plan, ranks, folder, keep);
   sensors_ = make_sensors(scene, plan, ranks, folder, keep);
   if (scene.output.average) average_.emplace(*scene.output.average, plan, ranks);
   if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);
@@ -95,15 +96,12 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
                     flat ? "time [s],x [m],y [m],pressure [Pa],ux [m/s],uy [m/s]"
                          : "time [s],x [m],y [m],z [m],pressure [Pa],ux [m/s],uy [m/s],uz [m/s]",
                     keep);
-  if (scene.fluid.flow)
-    flow_.emplace(folder + "/flow.csv",
-                  "time [s],flow [m3/s],wanted [m3/s],pressure_gradient [Pa/m]", keep);
   if (field_times_) fields_.emplace(folder, plan.units, scene.box.dimension, keep);
 }
 
 std::int64_t Observers::next_look(std::int64_t state) const {
   std::int64_t next = (state / guard_every_ + 1) * guard_every_;
-  if (obstacles_ || scene_.fluid.flow || !scene_.output.points.empty())
+  if (obstacles_ || flow_ || !scene_.output.points.empty())
     next = std::min(next, probe_times_.next(state + 1));
   if (field_times_) next = std::min(next, field_times_->next(state + 1));
   if (average_) next = std::min(next, average_->next(state + 1));
@@ -119,7 +117,7 @@ void Observers::at_state(std::int64_t state, Fluid& fluid, const Particles* part
     write_fields(time_of(state), fluid, particles);
   if (last || probe_times_.due(state)) {
     write_points(time_of(state), fluid);
-    if (scene_.fluid.flow) write_flow(time_of(state), fluid);
+    if (flow_) flow_->write(time_of(state), fluid);
     if (obstacles_) obstacles_->write(time_of(state));
   }
   measure(state, fluid, last);
@@ -199,22 +197,6 @@ void Observers::write_points(double time, Fluid& fluid) {
       points_->row({time, x.x(), x.y(), x.z(), pressure, u.x(), u.y(), u.z()});
   }
   if (points_) points_->flush();
-}
-
-void Observers::write_flow(double time, const Fluid& fluid) {
-  const FlowControl& control = *fluid.flow_control();
-  const int axis = control.axis();
-  double area = scene_.box.dimension == 2 ? scene_.box.depth : 1.0;
-  for (int k = 0; k < scene_.box.dimension; ++k)
-    if (k != axis) area *= scene_.box.size[k];
-  const double to_flow = plan_.units.velocity() * area;
-  held_flow_ = {
-      mean_velocity(fluid, axis) * to_flow,
-      control.force() * plan_.units.dx / (plan_.units.dt * plan_.units.dt) * scene_.fluid.density};
-  if (!flow_) return;
-  flow_->row({time, held_flow_->flow, control.wanted(fluid.steps()) * to_flow,
-              held_flow_->pressure_gradient});
-  flow_->flush();
 }
 
 /// Looks at every cell of a state.
@@ -388,10 +370,7 @@ Summary Observers::summary(double wall_seconds) const {
                   {"box_x", scene_.box.size.x()},
                   {"box_y", scene_.box.size.y()},
                   {"velocity_scale", scene_.fluid.velocity_scale}};
-  if (held_flow_) {
-    s.parameters["flow"] = held_flow_->flow;
-    s.parameters["pressure_gradient"] = held_flow_->pressure_gradient;
-  }
+  if (flow_) flow_->describe(s.parameters);
   if (viscosity_) {
     s.parameters["share_at_rest_bound"] = viscosity_->at_rest_bound;
     s.parameters["share_at_shear_bound"] = viscosity_->at_shear_bound;

@@ -9,6 +9,7 @@
 
 #include "lbm_solver/coupling/diagnosis.h"
 #include "lbm_solver/coupling/field_average.h"
+#include "lbm_solver/coupling/held_flow.h"
 #include "lbm_solver/coupling/obstacle_loads.h"
 #include "lbm_solver/coupling/output_times.h"
 #include "lbm_solver/coupling/particles.h"
@@ -88,11 +89,6 @@ class Observers {
   Summary summary(double wall_seconds) const;
 
  private:
-  /// A flow that is held, and what drives it.
-  struct HeldFlow {
-    double flow = 0.0;               ///< [m³/s]
-    double pressure_gradient = 0.0;  ///< that would drive it, -dp/dx [Pa/m]
-  };
   double time_of(std::int64_t state) const { return static_cast<double>(state) * plan_.interval(); }
   void guard(std::int64_t state, Fluid& fluid, const Particles* particles);
   void measure(std::int64_t state, Fluid& fluid, bool last);
@@ -102,7 +98,6 @@ class Observers {
                  const std::vector<protocol::Bond>& bonds, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
   void write_points(double time, Fluid& fluid);
-  void write_flow(double time, const Fluid& fluid);
   void write_particles(double time, const Particles& particles);
   void report_viscosity(std::int64_t state, const Fluid& fluid);
   void report_progress(std::int64_t state, const Particles* particles);
@@ -115,7 +110,7 @@ class Observers {
   std::optional<OutputTimes> field_times_;  // where fields are asked for
   std::optional<ProbeWriter> probes_;       // particles
   std::optional<CsvWriter> points_;
-  std::optional<CsvWriter> flow_;  // where one is held
+  std::optional<HeldFlow> flow_;  // where one is held
   std::optional<ObstacleLoads> obstacles_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::optional<FieldAverage> average_;
@@ -128,7 +123,6 @@ class Observers {
   SpeedRecord speeds_;
   bool warned_ = false;                                 // of a speed above kWarnSpeed
   std::optional<ViscosityUse> viscosity_;               // at the end, where it varies
-  std::optional<HeldFlow> held_flow_;                   // last written
   double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out
   std::chrono::steady_clock::time_point start_, last_progress_;
 };
