@@ -88,7 +88,7 @@ ProfileScene grid_of(const Lines& lines, const auto& fail) {
 
 ProfileScene read_profile(TableReader& t, SideName side, int dimension,
                           const std::string& scene_file) {
-  const std::string name = t.text_or(kKey, "");
+  const std::string name = t.text_or("profile_table", "");
   if (name.empty()) return {};
   const auto path = std::filesystem::path(scene_file).parent_path() / name;
   const auto fail = [&](const std::string& problem, const std::string& remedy) {

@@ -61,7 +61,7 @@ def gels():
     yield Hard("gel, n = 0.3, whole force at once, τ 0.5 … 120", "bounded; flow within 2 %", OWN / "gel_channel", [{}],
                gel_flow(0.01, 0.02), solids=False)
     yield Hard("mud below its yield stress, from rest", "bounded; creeps as a fluid of nu_max, within 1 %", OWN / "gel_channel",
-               [law(yield_stress=0.8)], gel_flow(0.2373 * 0.003**2 / (12 * 2.4e-3), 0.01), solids=False)
+               [law(yield_stress=0.8, shear_rate=40.0)], gel_flow(0.2373 * 0.003**2 / (12 * 2.4e-3), 0.01), solids=False)
     yield Hard("gel, nu_max at τ 500", "refused", OWN / "gel_channel", [law(nu_max=0.01001)], solids=False)
     yield Hard("gel, nu_min at τ - ½ = 5e-7", "refused", OWN / "gel_channel", [law(nu_min=1e-11)], solids=False)
     yield Hard("a disc in mud, twice and a fifth of the critical yield stress", "held; falls", OWN / "held_disc",
