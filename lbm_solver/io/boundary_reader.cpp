@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "lbm_solver/io/profile_reader.h"
 #include "lbm_solver/io/time_table_reader.h"
 
 namespace lbm {
@@ -57,6 +58,9 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::strin
   if (b.kind == Kind::Velocity) {
     b.velocity = t.vector("velocity", box.dimension, "[m/s]");
     b.parabolic = t.choice_or("profile", "uniform", {"uniform", "parabolic"}) == "parabolic";
+    b.profile = read_profile(t, b.side, box.dimension, scene_file);
+    if (b.parabolic && !b.profile.factors.empty())
+      t.fail("profile_table", "stands beside profile = \"parabolic\"", "give one of them");
     if (kind == "moving_wall" && b.velocity[axis] != 0.0)
       t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
   } else {
