@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "lbm_solver/io/image_file.h"
+#include "lbm_solver/io/motion_reader.h"
 #include "lbm_solver/io/stl_file.h"
 #include "protocol/program/checksum.h"
 #include "protocol/program/input_file.h"
@@ -199,6 +200,54 @@ ImageScene read_image(TableReader& t, const std::string& scene_file, const BoxSc
   return scene;
 }
 
+/// A block that moves: the mesh of a box, in two dimensions through most of the layer's depth (a
+/// solid program that repeats the layer would find its ends in one place).
+MeshScene box_mesh(Vec3 low, Vec3 high, const BoxScene& box) {
+  if (box.dimension == 2) {
+    low.z() = -0.4 * box.depth;
+    high.z() = 0.4 * box.depth;
+  }
+  TriangleMesh mesh;
+  for (unsigned k = 0; k < 8; ++k)
+    mesh.vertices.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(),
+                               k & 4 ? high.z() : low.z());
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  MeshScene scene;
+  scene.file = "of a block";
+  scene.volume = enclosed_volume(mesh);
+  scene.surface = std::make_shared<const TriangleMesh>(std::move(mesh));
+  return scene;
+}
+
+/// Its middle, about which it turns where nothing else is said.
+Vec3 middle_of(const ObstacleScene& o) {
+  if (o.round) return o.centre;
+  const auto [low, high] = bounds(*o.mesh->surface);
+  return 0.5 * (low + high);
+}
+
+void read_its_motion(TableReader& t, const std::string& scene_file, const BoxScene& box,
+                     ObstacleScene& o) {
+  std::optional<ReadMotion> read = read_motion(t, scene_file, box.dimension);
+  if (!read) return;
+  if (o.image)
+    t.fail("motion", "is there for discs, spheres, blocks and meshes, not for images",
+           "draw it as a mesh, or leave motion out");
+  if (!o.spin.isZero(0.0))
+    t.fail("spin", "stands beside motion", "give motion = \"rotation\" and angular_velocity");
+  if (o.block()) {
+    for (int k = 0; k < box.dimension; ++k)
+      if (!(o.from[k] < o.to[k]))
+        t.fail("to", fmt::format("is not above from in {}", "xyz"[k]),
+               "give its lower and upper corner");
+    o.mesh = box_mesh(o.from, o.to, box);
+  }
+  o.motion = std::move(read->motion);
+  if (!read->has_pivot) o.motion->about = middle_of(o);
+  if (box.dimension == 2) o.motion->about.z() = 0.0;
+}
+
 }  // namespace
 
 ObstacleScene read_obstacle(TableReader t, const std::string& scene_file, const BoxScene& box) {
@@ -224,6 +273,7 @@ ObstacleScene read_obstacle(TableReader t, const std::string& scene_file, const 
         t.vector("from", d, "[m], or centre and diameter of a disc or sphere, or a mesh or image");
     o.to = t.vector("to", d, "[m]");
   }
+  read_its_motion(t, scene_file, box, o);
   t.finish();
   return o;
 }

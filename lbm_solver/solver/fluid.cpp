@@ -9,6 +9,7 @@
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/base/simd.h"
 #include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/immersed/moving_shape.h"
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/immersed/solid_fraction.h"
 
@@ -88,9 +89,32 @@ void Fluid::add(const Geometry& geometry) {
   body.centre = geometry.centre();
 }
 
+void Fluid::add(const MeshSolid& solid, PoseInTime pose, bool stays) {
+  BPLBM_EXPECT(cover_ != nullptr);
+  cover_->add(std::make_unique<MovingShape>(
+      solid, radius_shift(choice_.solid_term, domain().dimension()), stays));
+  Body& body = fixed_.emplace_back();
+  body.id = static_cast<std::int64_t>(fixed_.size());
+  movers_.push_back({fixed_.size() - 1, std::move(pose)});
+  moved_to_ = -1;
+}
+
+void Fluid::move_shapes() {
+  if (movers_.empty() || moved_to_ == steps_) return;
+  remember_loads();
+  std::vector<Pose> poses;
+  for (const Mover& mover : movers_) {
+    poses.push_back(mover.pose(steps_));
+    fixed_[mover.fixed].centre = poses.back().centre();
+  }
+  cover_->move(poses);
+  moved_to_ = steps_;
+}
+
 void Fluid::place(std::span<const Body> bodies) {
   BPLBM_EXPECT(has_solids());
   remember_loads();
+  move_shapes();
   bodies_.assign(bodies.begin(), bodies.end());
   if (!scheme_) cover_->update(bodies);
 }
@@ -181,6 +205,10 @@ void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
       after_each();
     }
     return;
+  }
+  if (!movers_.empty()) {
+    for (; steps > 1; --steps) advance(1);
+    move_shapes();
   }
   if (!two_steps_.on()) return make_steps(steps, {});
   remember_loads();
@@ -452,6 +480,7 @@ void Fluid::load(const Record& record) {
     populations = record.list<double>("populations", q_count * all[0] * all[1] * all[2]);
   populations = ranks_->scatter(std::move(populations), lattice().Q);
   steps_ = record.integer("steps");
+  move_shapes();
   stream_.set_odd(record.integer("odd") != 0);
   if (force_in_time_.changes_after(0)) set_body_force();
   each_cell(n, [&](std::size_t number, int x, int y, int z) {
