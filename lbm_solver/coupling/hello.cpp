@@ -34,6 +34,15 @@ std::vector<const ObstacleScene*> meshes_of(const Scene& s) {
   return meshes;
 }
 
+/// The discs that a script can have as walls, in its words.
+std::vector<std::string> discs_of(const Scene& s) {
+  std::vector<std::string> discs;
+  for (const ObstacleScene& o : s.obstacles)
+    if (std::string wall = disc_wall_words(o); s.box.dimension == 2 && !wall.empty())
+      discs.push_back(std::move(wall));
+  return discs;
+}
+
 /// The box around a mesh as it lies at a time.
 std::string mesh_text(const ObstacleScene& o, double time) {
   TriangleMesh mesh = *o.mesh->surface;
@@ -51,7 +60,9 @@ void add_walls(const Scene& s, double time, protocol::Hello& h) {
     (*h.sides)[side] = wall_at(s, static_cast<SideName>(side));
   const auto meshes = meshes_of(s);
   for (const ObstacleScene* o : meshes) h.bodies.push_back("obstacle: " + mesh_text(*o, time));
-  const std::size_t n = s.obstacles.size() - meshes.size();
+  std::size_t n = s.obstacles.size() - meshes.size();
+  for (std::size_t i = 0; i < discs_of(s).size(); ++i, --n)
+    h.bodies.push_back(fmt::format("disc{} (cylinder)", i + 1));
   if (n > 0) h.bodies.push_back(n == 1 ? "the scene's obstacle" : fmt::format("{} obstacles", n));
 }
 
@@ -68,10 +79,9 @@ void add_shapes(const Scene& s, const std::string& folder, protocol::Hello& h) {
     if (motion)
       h.variables.push_back({fmt::format("mesh{}_motion", i + 1), mesh_motion_words(*motion)});
   }
-  int discs = 0;
-  for (const ObstacleScene& o : s.obstacles)
-    if (const std::string wall = disc_wall_words(o); s.box.dimension == 2 && !wall.empty())
-      h.variables.push_back({fmt::format("disc{}_wall", ++discs), wall});
+  const std::vector<std::string> discs = discs_of(s);
+  for (std::size_t i = 0; i < discs.size(); ++i)
+    h.variables.push_back({fmt::format("disc{}_wall", i + 1), discs[i]});
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decompo
   int lines = 0;
   for (const ObstacleScene& o : scene.obstacles) {
     has_grains_ = has_grains_ || o.grain;
-    (o.round ? line_ : o.block() ? block_line_ : shape_line_).push_back(o.grain ? 0 : ++lines);
+    (o.body() ? line_ : o.block() ? block_line_ : shape_line_).push_back(o.grain ? 0 : ++lines);
     if (o.motion && ranks.rank() == 0) movers_.push_back({lines, InnerFluid(plan, o)});
-    if (!o.round) continue;
+    if (!o.body()) continue;
     motions_.push_back(o.motion);
     centres_.push_back(units_.to_lattice_position(o.centre));
   }

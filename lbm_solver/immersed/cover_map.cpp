@@ -42,6 +42,9 @@ struct CoverMap::Mover {
   std::unique_ptr<MovingShape> shape;
   std::size_t blocks;               // its own in fixed_
   std::vector<std::size_t> places;  // in the index, of each block
+  /// The core of a hollow one reaches to the sides of the box: that it rubs there is no load.
+  std::vector<CoverBlock> far;
+  std::vector<std::size_t> far_places;
 };
 
 CoverMap::CoverMap(const Domain& domain, const Block& cells, const RadiusShift& shift)
@@ -93,7 +96,7 @@ void CoverMap::add(const Geometry& geometry) {
 void CoverMap::add(std::unique_ptr<MovingShape> shape) {
   BPLBM_EXPECT(footprints_.empty());
   fixed_.emplace_back();
-  movers_.push_back({std::move(shape), fixed_.size() - 1, {}});
+  movers_.push_back({std::move(shape), fixed_.size() - 1, {}, {}, {}});
   motions_.resize(1 + movers_.size());
 }
 
@@ -105,16 +108,29 @@ void CoverMap::move(std::span<const Pose> poses) {
     if (!mover.shape->look(poses[k])) continue;
     std::vector<CoverBlock>& blocks = fixed_[mover.blocks];
     for (std::size_t i = 0; i < blocks.size(); ++i) unlink(mover.places[i], blocks[i]);
-    blocks.clear();
-    mover.places.clear();
+    for (std::size_t i = 0; i < mover.far.size(); ++i) unlink(mover.far_places[i], mover.far[i]);
+    for (auto* list : {&blocks, &mover.far}) list->clear();
+    for (auto* list : {&mover.places, &mover.far_places}) list->clear();
+    const auto motion = static_cast<std::int32_t>(1 + k);
+    std::vector<double> cover;
     mover.shape->map(domain_, cells_, [&](const CoverSpan& span) {
-      each_block(span.x, span.arm, span.cover, [&](const CoverBlock& block, int b) {
-        blocks.push_back(block);
-        blocks.back().motion = static_cast<std::int32_t>(1 + k);
-        mover.places.push_back(place(span.y, span.z, b));
-      });
+      const auto put = [&](bool far, std::vector<CoverBlock>& to, std::vector<std::size_t>& at) {
+        cover.assign(span.cover.begin(), span.cover.end());
+        if (mover.shape->hollow())
+          for (double& c : cover)
+            if ((c == kCore) != far) c = 0.0;
+        each_block(span.x, span.arm, cover, [&](const CoverBlock& block, int b) {
+          to.push_back(block);
+          to.back().motion = motion;
+          at.push_back(place(span.y, span.z, b));
+        });
+      };
+      put(false, blocks, mover.places);
+      if (mover.shape->hollow()) put(true, mover.far, mover.far_places);
     });
     for (std::size_t i = 0; i < blocks.size(); ++i) insert(index_[mover.places[i]], blocks[i]);
+    for (std::size_t i = 0; i < mover.far.size(); ++i)
+      insert(index_[mover.far_places[i]], mover.far[i]);
   }
 }
 

@@ -14,7 +14,7 @@
 namespace lbm {
 namespace {
 
-constexpr int kCoreCells = 2;  // whole cells around one of the core
+constexpr int kCoreCells = 2;  // from one of the core to the next that is not covered whole
 
 /// What a mesh covers of a block of cells that may reach beyond the rank's.
 class Region {
@@ -39,14 +39,16 @@ class Region {
   }
   /// Makes core of the whole cells that have nothing but whole cells around them.
   void mark_core(int dimension) {
-    std::vector<std::uint8_t> whole(size_), next(size_);
+    const std::vector<Cell3> around = ball(dimension);
+    std::vector<std::uint8_t> whole(size_);
     for (std::size_t k = 0; k < size_; ++k) whole[k] = cover_[k] == 1.0;
-    for (int axis = 0; axis < dimension; ++axis) {
-      erode(axis, whole, next);
-      whole.swap(next);
-    }
-    for (std::size_t k = 0; k < size_; ++k)
-      if (whole[k]) cover_[k] = kCore;
+    const Cell3& n = cells_.size;
+    Cell3 c;
+    for (c[2] = 0; c[2] < n[2]; ++c[2])
+      for (c[1] = 0; c[1] < n[1]; ++c[1])
+        for (c[0] = 0; c[0] < n[0]; ++c[0])
+          if (whole[at(c[0], c[1], c[2])] && inside(whole, c, around))
+            cover_[at(c[0], c[1], c[2])] = kCore;
   }
 
   const double* row(int x, int y, int z) const { return &cover_[at(x, y, z)]; }
@@ -55,21 +57,27 @@ class Region {
   std::size_t at(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * cells_.size[1] + y) * cells_.size[0] + x;
   }
-  /// Along an axis: what has kCoreCells of its kind to both sides.
-  void erode(int axis, const std::vector<std::uint8_t>& from, std::vector<std::uint8_t>& to) const {
-    const Cell3& n = cells_.size;
-    const std::ptrdiff_t step = axis == 0 ? 1 : axis == 1 ? n[0] : std::ptrdiff_t{n[0]} * n[1];
-    std::ranges::fill(to, std::uint8_t{0});
-    Cell3 c;
-    for (c[2] = 0; c[2] < n[2]; ++c[2])
-      for (c[1] = 0; c[1] < n[1]; ++c[1])
-        for (c[0] = 0; c[0] < n[0]; ++c[0]) {
-          if (c[axis] < kCoreCells || c[axis] >= n[axis] - kCoreCells) continue;
-          const auto here = static_cast<std::ptrdiff_t>(at(c[0], c[1], c[2]));
-          bool all = true;
-          for (int k = -kCoreCells; k <= kCoreCells; ++k) all = all && from[here + k * step];
-          to[here] = all;
-        }
+  /// Ways to the cells within kCoreCells of one, but for itself.
+  static std::vector<Cell3> ball(int dimension) {
+    std::vector<Cell3> ways;
+    const int deep = dimension == 3 ? kCoreCells : 0;
+    for (int z = -deep; z <= deep; ++z)
+      for (int y = -kCoreCells; y <= kCoreCells; ++y)
+        for (int x = -kCoreCells; x <= kCoreCells; ++x)
+          if (const int far = x * x + y * y + z * z; far > 0 && far <= kCoreCells * kCoreCells)
+            ways.push_back({x, y, z});
+    return ways;
+  }
+  bool inside(const std::vector<std::uint8_t>& whole, const Cell3& c,
+              const std::vector<Cell3>& ways) const {
+    return std::ranges::all_of(ways, [&](const Cell3& way) {
+      Cell3 there;
+      for (int a = 0; a < 3; ++a) {
+        there[a] = c[a] + way[a];
+        if (there[a] < 0 || there[a] >= cells_.size[a]) return false;
+      }
+      return whole[at(there[0], there[1], there[2])] != 0;
+    });
   }
 
   Block cells_;
@@ -147,10 +155,8 @@ void MovingShape::map_image(const Vec3& offset, const Domain& domain, const Bloc
   }
   Region region(around);
   region.fill(image, bend_, at_rest_.hollow, shift_);
-  if (stays_)
-    region.mark_wall();
-  else
-    region.mark_core(domain.dimension());
+  if (!stays_ || at_rest_.hollow) region.mark_core(domain.dimension());
+  if (stays_) region.mark_wall();
   const Vec3 centre = pose_.centre() + offset;
   const bool flat = domain.dimension() == 2;
   for (int z = from[2]; z < to[2]; ++z)

@@ -27,10 +27,11 @@ class MovingShape {
   ///               which reflects all that arrives
   MovingShape(MeshSolid at_rest, const RadiusShift& shift, bool stays = false);
 
+  bool hollow() const { return at_rest_.hollow; }
   /// @return whether the map of this pose is another one than that of the last
   bool look(const Pose& pose);
-  /// The cells of the pose that was looked at; images across periodic sides too. Core is what lies
-  /// at least two whole cells away from all that is not covered whole.
+  /// The cells of the pose that was looked at; images across periodic sides too. Core is what has
+  /// nothing but whole cells within two cells around it.
   /// @throws std::invalid_argument  see fill()
   void map(const Domain& domain, const Block& cells,
            const std::function<void(const CoverSpan&)>& take) const;

@@ -200,19 +200,15 @@ ImageScene read_image(TableReader& t, const std::string& scene_file, const BoxSc
   return scene;
 }
 
-/// A block that moves: the mesh of a box, in two dimensions through most of the layer's depth (a
-/// solid program that repeats the layer would find its ends in one place).
+/// A block that moves: the mesh of a box, in two dimensions a short piece of it around the middle
+/// of the layer. (A solid program that repeats the layer would find ends at its borders in one
+/// place, and LIGGGHTS wants triangles that are not too long.)
 MeshScene box_mesh(Vec3 low, Vec3 high, const BoxScene& box) {
   if (box.dimension == 2) {
-    low.z() = -0.4 * box.depth;
-    high.z() = 0.4 * box.depth;
+    high.z() = std::min(0.4 * box.depth, 0.5 * (high - low).maxCoeff());
+    low.z() = -high.z();
   }
-  TriangleMesh mesh;
-  for (unsigned k = 0; k < 8; ++k)
-    mesh.vertices.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(),
-                               k & 4 ? high.z() : low.z());
-  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  TriangleMesh mesh = box_surface(low, high);
   MeshScene scene;
   scene.file = "of a block";
   scene.volume = enclosed_volume(mesh);

@@ -14,6 +14,11 @@
 #include "lbm_solver/immersed/solid_fraction.h"
 
 namespace lbm {
+namespace {
+
+constexpr double kWallLag = 0.5;  // of cells that reflect all that arrives: the mean of two steps
+
+}  // namespace
 
 Fluid::Fluid(const Domain& domain, const KernelChoice& choice)
     : Fluid(Decomposition(domain), choice) {}
@@ -87,6 +92,7 @@ void Fluid::add(const Geometry& geometry) {
   Body& body = fixed_.emplace_back();
   body.id = static_cast<std::int64_t>(fixed_.size());
   body.centre = geometry.centre();
+  fixed_lags_.push_back(load_lag(choice_.solid_term, choice_.parameters.tau));
 }
 
 void Fluid::add(const MeshSolid& solid, PoseInTime pose, bool stays) {
@@ -96,6 +102,7 @@ void Fluid::add(const MeshSolid& solid, PoseInTime pose, bool stays) {
   Body& body = fixed_.emplace_back();
   body.id = static_cast<std::int64_t>(fixed_.size());
   movers_.push_back({fixed_.size() - 1, std::move(pose)});
+  fixed_lags_.push_back(stays ? kWallLag : load_lag(choice_.solid_term, choice_.parameters.tau));
   moved_to_ = -1;
 }
 
@@ -136,7 +143,7 @@ std::vector<BodyLoad> Fluid::loads() const {
 std::vector<BodyLoad> Fluid::fixed_loads() const {
   if (fixed_.empty()) return {};
   if (!two_steps_.on()) return cover_->fixed_loads();
-  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells());
+  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells(), fixed_lags_);
 }
 
 namespace {

@@ -186,7 +186,8 @@ class Fluid {
     PoseInTime pose;
   };
   std::vector<Mover> movers_;
-  std::int64_t moved_to_ = -1;  // step whose poses the map has
+  std::vector<double> fixed_lags_;  // load_lag of each of fixed_
+  std::int64_t moved_to_ = -1;      // step whose poses the map has
   TwoStepLoads two_steps_, fixed_two_steps_;
   bool loads_are_new_ = false;  // those in the map are of a step that two_steps_ does not know
   std::vector<std::unique_ptr<Patch>> patches_;

@@ -149,8 +149,9 @@ void choose_solids(const Scene& s, Plan& plan) {
   k.solid_term = "none";
   const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
                                   [](const ObstacleScene& o) { return o.block(); });
-  const bool shapes = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                  [](const ObstacleScene& o) { return o.mesh || o.image; });
+  const bool shapes =
+      std::any_of(s.obstacles.begin(), s.obstacles.end(),
+                  [](const ObstacleScene& o) { return o.mesh || o.image || o.drum(); });
   const bool moving = std::ranges::any_of(
       s.obstacles, [](const ObstacleScene& o) { return o.motion || !o.spin.isZero(0.0); });
   if (!s.coupling && s.obstacles.empty()) return;

@@ -105,6 +105,15 @@ MeshSolid solid_of(const Plan& p, const MeshScene& mesh) {
   return {std::make_shared<const TriangleMesh>(std::move(surface)), mesh.hollow};
 }
 
+MeshSolid drum_of(const Plan& p, const ObstacleScene& o) {
+  const int d = p.domain.dimension();
+  TriangleMesh surface =
+      round_surface(p.units.to_lattice_position(o.centre), 0.5 * o.diameter / p.units.dx, d);
+  if (d == 2)
+    for (Vec3& v : surface.vertices) v.z() = v.z() > 0.0 ? 2.0 : -1.0;
+  return {std::make_shared<const TriangleMesh>(std::move(surface)), true};
+}
+
 /// A voxel is a whole number of cells wide, or a cell of voxels.
 VoxelSolid solid_of(const Scene& s, const Plan& p, const ImageScene& image) {
   VoxelSolid solid;
@@ -188,7 +197,7 @@ Pose pose_in_cells(const Units& units, const MotionScene& motion, std::int64_t s
 std::vector<Body> obstacle_bodies(const Scene& s, const Plan& p, std::int64_t step) {
   std::vector<Body> bodies;
   for (const ObstacleScene& o : s.obstacles) {
-    if (!o.round) continue;
+    if (!o.body()) continue;
     Body& body = bodies.emplace_back(
         Body{-static_cast<std::int64_t>(bodies.size() + 1), p.units.to_lattice_position(o.centre),
              0.5 * o.diameter / p.units.dx, Vec3(), p.units.to_lattice_spin(o.spin), o.hollow});
@@ -203,7 +212,7 @@ std::vector<Body> obstacle_bodies(const Scene& s, const Plan& p, std::int64_t st
 
 bool has_moving_bodies(const Scene& s) {
   return std::ranges::any_of(s.obstacles,
-                             [](const ObstacleScene& o) { return o.round && o.motion; });
+                             [](const ObstacleScene& o) { return o.body() && o.motion; });
 }
 
 std::vector<CellBox> obstacle_blocks(const Scene& s, const Plan& p) {
@@ -218,6 +227,7 @@ std::vector<Geometry> obstacle_shapes(const Scene& s, const Plan& p) {
   for (const ObstacleScene& o : s.obstacles) {
     if (o.mesh) shapes.push_back({solid_of(p, *o.mesh)});
     if (o.image) shapes.push_back({solid_of(s, p, *o.image)});
+    if (o.drum()) shapes.push_back({drum_of(p, o)});
   }
   return shapes;
 }

@@ -47,7 +47,12 @@ bool same(const Extent& a, const Extent& b, const Hello& box) {
   return true;
 }
 
-/// The bodies of one side that the other has not as the same mesh.
+/// A cylinder does not tell where it is: one that both have is taken for the same.
+bool is_cylinder(const std::string& body) {
+  return body.find("(cylinder)") != std::string::npos;
+}
+
+/// The bodies of one side that the other has not as the same mesh, or as a cylinder.
 std::vector<std::string> unshared(const std::vector<std::string>& mine,
                                   const std::vector<std::string>& others, const Hello& box) {
   std::vector<std::string> rest;
@@ -57,7 +62,8 @@ std::vector<std::string> unshared(const std::vector<std::string>& mine,
                           const auto other = mesh_in(o);
                           return other && same(*mesh, *other, box);
                         });
-    if (!shared) rest.push_back(body);
+    const bool round = is_cylinder(body) && std::any_of(others.begin(), others.end(), is_cylinder);
+    if (!shared && !round) rest.push_back(body);
   }
   return rest;
 }

@@ -71,7 +71,7 @@ fix flat all enforce2d
 dump places all mesh/stl ${substeps}0 ${out_folder}/block*.stl
 run ${solid_steps_total}
 )");
-    test::run("ln -s " BPLBM_SOURCE_DIR "/cases/common common", folder_.path(), 5.0);
+    test::run("ln -sfn " BPLBM_SOURCE_DIR "/cases/common common", folder_.path(), 5.0);
   }
   JobResult run(const std::string& options) const {
     return test::run(
@@ -113,8 +113,8 @@ TEST_F(MovingBlock, IsInOnePlaceForBoth) {
   for (const Case& c :
        {Case{"motion = \"linear\"\nvelocity = [0.03, 0.02]", 0.0, 0.036},
         Case{"motion = \"rotation\"\nangular_velocity = -4.0\nabout = [0.012, 0.015]", 0.0, 0.03},
-        Case{"motion = \"oscillation\"\namplitude = [0.002, 0.001]\nfrequency = 6.0", 1.0, 0.085},
-        Case{"motion = \"oscillation\"\nangular_amplitude = 0.4\nfrequency = 6.0", 1.0, 0.05}}) {
+        Case{"motion = \"oscillation\"\namplitude = [0.001, 0.0005]\nfrequency = 11.0", 1.0, 0.085},
+        Case{"motion = \"oscillation\"\nangular_amplitude = 0.2\nfrequency = 11.0", 1.0, 0.05}}) {
     write(c.motion);
     const JobResult job = run("--out out");
     ASSERT_EQ(job.exit_code, 0) << job.output;
@@ -138,7 +138,7 @@ TEST_F(MovingBlock, IsInOnePlaceForBoth) {
 TEST_F(MovingBlock, GoesOnFromACheckpointToTheBit) {
   for (const std::string motion :
        {"motion = \"rotation\"\nangular_velocity = -4.0\nabout = [0.012, 0.015]",
-        "motion = \"oscillation\"\namplitude = [0.002, 0.001]\nfrequency = 6.0"}) {
+        "motion = \"oscillation\"\namplitude = [0.001, 0.0005]\nfrequency = 11.0"}) {
     write(motion);
     ASSERT_EQ(run("--out whole").exit_code, 0);
     ASSERT_EQ(run("--out cut --until 0.05").exit_code, 0);
@@ -161,8 +161,8 @@ TEST_F(MovingBlock, AsksForNoMotionThatIsNotThere) {
       test::replaced(file("in.liggghts"), "${mesh1_motion}", "${mesh2_motion}");
   folder_.write("in.liggghts", script);
   const JobResult job = run("--out out");
-  EXPECT_EQ(job.exit_code, 2) << job.output;
-  EXPECT_NE(job.output.find("mesh2_motion"), std::string::npos) << job.output;
+  EXPECT_NE(job.exit_code, 0) << job.output;
+  EXPECT_NE(job.output.find("nothing defines ${mesh2_motion}"), std::string::npos) << job.output;
 }
 
 }  // namespace
