@@ -4,24 +4,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/boundary_reader.h"
+#include "lbm_solver/io/fluid_reader.h"
+#include "lbm_solver/io/grains_reader.h"
 #include "lbm_solver/io/obstacle_reader.h"
+#include "lbm_solver/io/output_reader.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
-#include "lbm_solver/viscosity/viscosity_law.h"
-#include "protocol/program/checksum.h"
 #include "protocol/program/input_file.h"
 
 namespace lbm {
 namespace {
 
-constexpr std::uintmax_t kLargestScene = 16'000'000, kLargestTable = 256'000'000;  // bytes
+constexpr std::uintmax_t kLargestScene = 16'000'000;  // bytes
 
 toml::table parse(const std::string& file) {
   if (const auto problem = protocol::why_unreadable(file, kLargestScene); !problem.empty())
@@ -74,134 +72,6 @@ BoxScene read_box(TableReader t) {
              "make the sides periodic, or give [[boundary]] pressures");
   t.finish();
   return box;
-}
-
-using ViscosityModel = ViscosityScene::Model;
-
-/// Keys of the laws that a model has not.
-void refuse_other_keys(TableReader& t, ViscosityModel model) {
-  const bool newtonian = model == ViscosityModel::Newtonian || model == ViscosityModel::Smagorinsky;
-  const bool yields = model == ViscosityModel::Bingham || model == ViscosityModel::HerschelBulkley;
-  const bool carreau = model == ViscosityModel::Carreau;
-  const auto refuse = [&](bool known, std::initializer_list<const char*> keys) {
-    for (const char* key : keys)
-      if (!known && t.has(key))
-        t.fail(key, "has no meaning with model = \"" + name_of(model) + "\"", "leave it out");
-  };
-  refuse(!newtonian, {"nu_min", "nu_max", "shear_rate"});
-  refuse(!newtonian && !carreau, {"consistency"});
-  refuse(!newtonian && model != ViscosityModel::Bingham, {"index"});
-  refuse(yields, {"yield_stress", "regularisation"});
-  refuse(carreau, {"time_constant"});
-}
-
-ViscosityScene read_viscosity(TableReader t) {
-  ViscosityScene v;
-  std::vector<std::string> names;
-  for (const ViscosityModel model : known_viscosities()) names.push_back(name_of(model));
-  const std::string name = t.choice_or("model", names.front(), names);
-  v.model = known_viscosities()[std::ranges::find(names, name) - names.begin()];
-  refuse_other_keys(t, v.model);
-  const bool newtonian =
-      v.model == ViscosityModel::Newtonian || v.model == ViscosityModel::Smagorinsky;
-  const bool carreau = v.model == ViscosityModel::Carreau;
-  if (!newtonian && !carreau) v.consistency = t.number("consistency", Bounds::positive(), "Pa sⁿ");
-  if (!newtonian && v.model != ViscosityModel::Bingham) v.index = t.number("index", {0.1, 2.0}, "");
-  if (carreau) v.time_constant = t.number("time_constant", Bounds::positive(), "s");
-  if (v.model == ViscosityModel::Bingham || v.model == ViscosityModel::HerschelBulkley) {
-    v.yield_stress = t.number("yield_stress", Bounds::positive(), "Pa");
-    if (t.choice_or("regularisation", "bi_viscosity", {"bi_viscosity", "papanastasiou"}) !=
-        "bi_viscosity")
-      v.regularisation = ViscosityScene::Regularisation::Papanastasiou;
-  }
-  v.nu_min = t.optional_number("nu_min", Bounds::positive(), "m²/s");
-  v.nu_max = t.optional_number("nu_max", Bounds::positive(), "m²/s");
-  v.shear_rate = t.optional_number("shear_rate", Bounds::positive(), "1/s");
-  if (carreau && !(v.nu_min && v.nu_max))
-    t.fail(v.nu_min ? "nu_max" : "nu_min", "is missing",
-           "Carreau's law goes from nu_max at rest to nu_min at high shear rates");
-  if (v.nu_min && v.nu_max && *v.nu_min >= *v.nu_max)
-    t.fail("nu_min",
-           fmt::format("= {:.6g} m²/s is not below nu_max = {:.6g} m²/s", *v.nu_min, *v.nu_max),
-           "give nu_min < nu_max");
-  v.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
-  if (v.model == ViscosityModel::Smagorinsky && v.smagorinsky == 0.0)
-    t.fail("smagorinsky", "is missing or 0", "give the constant S_c, e.g. 0.1");
-  t.finish();
-  return v;
-}
-
-/// A value's factor over time, from a table `time,factor` beside the scene [s, 1].
-TimeTableScene read_time_table(TableReader& t, const std::string& key, const std::string& repeat,
-                               const std::string& scene_file) {
-  TimeTableScene table;
-  const std::string name = t.text_or(key, "");
-  table.repeats = repeat == "periodic";
-  if (name.empty() && table.repeats)
-    t.fail(key, "is missing, and it is to repeat", "give the table, or leave the repeat out");
-  if (name.empty()) return table;
-  const auto path = std::filesystem::path(scene_file).parent_path() / name;
-  const auto fail = [&](const std::string& problem, const std::string& remedy) {
-    t.fail(key, "= \"" + name + "\": " + problem, remedy);
-  };
-  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
-    fail(problem, "put a table `time,factor` beside the scene");
-  t.note(key + "_content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  if (line != "time,factor")
-    fail("begins with '" + line.substr(0, 60) + "'", "the first line is time,factor (in s and 1)");
-  for (int number = 2; std::getline(file, line); ++number) {
-    double time = 0.0, factor = 0.0;
-    char rest = 0;
-    if (std::sscanf(line.c_str(), "%lf,%lf%c", &time, &factor, &rest) != 2 ||
-        !std::isfinite(time + factor))
-      fail(fmt::format("line {}: '{}' is not two finite numbers", number, line.substr(0, 60)),
-           "give time,factor");
-    if (!table.times.empty() && time <= table.times.back())
-      fail(fmt::format("line {}: time {:.6g} s does not come after {:.6g} s", number, time,
-                       table.times.back()),
-           "sort the lines by time, each time once");
-    table.times.push_back(time);
-    table.factors.push_back(factor);
-  }
-  if (table.times.size() < 2) fail("holds fewer than two lines", "give at least two times");
-  if (table.repeats && table.factors.front() != table.factors.back())
-    fail("repeats, and its last factor is not its first",
-         "end with the factor that it begins with");
-  return table;
-}
-
-FluidScene read_fluid(TableReader t, int d, const std::string& scene_file) {
-  FluidScene fluid;
-  fluid.density = t.number("density", Bounds::positive(), "kg/m³");
-  if (t.has("viscosity")) fluid.law = read_viscosity(t.table("viscosity"));
-  const bool newtonian = fluid.law.model == ViscosityModel::Newtonian ||
-                         fluid.law.model == ViscosityModel::Smagorinsky;
-  if (!newtonian && t.has("kinematic_viscosity"))
-    t.fail("kinematic_viscosity",
-           "stands beside a viscosity that depends on the shear rate, model = \"" +
-               name_of(fluid.law.model) + "\"",
-           "leave it out");
-  if (newtonian) fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
-  fluid.gravity = t.vector_or_zero("gravity", d, "[m/s²]");
-  fluid.body_force = t.vector_or_zero("body_force", d, "[m/s²]");
-  fluid.body_force_ramp = t.number_or("body_force_ramp", 0.0, Bounds::non_negative(), "s");
-  fluid.body_force_frequency =
-      t.number_or("body_force_frequency", 0.0, Bounds::non_negative(), "Hz");
-  fluid.body_force_table =
-      read_time_table(t, "body_force_table",
-                      t.choice_or("body_force_repeat", "once", {"once", "periodic"}), scene_file);
-  for (const char* key : {"body_force_frequency", "body_force_table"})
-    if (t.has(key) && fluid.body_force.norm() == 0.0)
-      t.fail(key, "stands beside a body_force of zero", "give body_force, or leave it out");
-  if (fluid.body_force_ramp > 0.0 && fluid.body_force.norm() == 0.0)
-    t.fail("body_force_ramp", "stands beside a body_force of zero",
-           "give body_force, or leave it out");
-  fluid.velocity_scale = t.number("velocity_scale", Bounds::positive(), "m/s");
-  t.finish();
-  return fluid;
 }
 
 NumericsScene read_numerics(TableReader t, int d) {
@@ -280,103 +150,6 @@ CouplingScene read_coupling(TableReader t) {
   return c;
 }
 
-/// `from` and `to` along a side: a number, in three dimensions two.
-void read_extent(TableReader& t, const BoxScene& box, int axis, BoundaryScene& b) {
-  const int first = axis == 0 ? 1 : 0;
-  const auto low = [&](int a) { return box.origin[a]; };
-  const auto high = [&](int a) { return box.origin[a] + box.size[a]; };
-  if (box.dimension == 2) {
-    b.from[0] = t.optional_number("from", {low(first), high(first)}, "m");
-    b.to[0] = t.optional_number("to", {b.from[0].value_or(low(first)), high(first)}, "m");
-    return;
-  }
-  const int axes[] = {first, axis == 2 ? 1 : 2};
-  for (auto* end : {&b.from, &b.to}) {
-    const char* key = end == &b.from ? "from" : "to";
-    if (!t.has(key)) continue;
-    const Vec3 pair = t.vector(key, 2, "[m] along the side's two axes");
-    for (int k = 0; k < 2; ++k) {
-      if (pair[k] < low(axes[k]) || pair[k] > high(axes[k]))
-        t.fail(key, fmt::format("holds {} m, which is outside the side", pair[k]),
-               fmt::format("stay within {} … {} m", low(axes[k]), high(axes[k])));
-      (*end)[k] = pair[k];
-    }
-  }
-}
-
-BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::string& scene_file) {
-  using Kind = BoundaryScene::Kind;
-  BoundaryScene b;
-  std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
-  sides.resize(2 * box.dimension);
-  if (!t.has("side"))
-    t.fail("side", "is missing", fmt::format("give one of: {}", fmt::join(sides, ", ")));
-  const std::string side = t.choice_or("side", "", sides);
-  b.side = static_cast<SideName>(std::find(sides.begin(), sides.end(), side) - sides.begin());
-  const int axis = axis_of(b.side);
-  if (box.sides[axis] == SideKind::Periodic)
-    t.fail("side", "= \"" + side + "\" is periodic", "make the box's sides there \"wall\"");
-  if (!t.has("kind"))
-    t.fail("kind", "is missing", "give velocity, moving_wall, pressure or outflow");
-  const std::string kind =
-      t.choice_or("kind", "", {"velocity", "moving_wall", "pressure", "outflow"});
-  b.kind = kind == "pressure" ? Kind::Pressure : kind == "outflow" ? Kind::Outflow : Kind::Velocity;
-  read_extent(t, box, axis, b);
-  if (b.kind == Kind::Velocity) {
-    b.velocity = t.vector("velocity", box.dimension, "[m/s]");
-    b.parabolic = t.choice_or("profile", "uniform", {"uniform", "parabolic"}) == "parabolic";
-    if (kind == "moving_wall" && b.velocity[axis] != 0.0)
-      t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
-  } else {
-    b.pressure = t.number_or("pressure", 0.0, {}, "Pa");
-  }
-  if (b.kind != Kind::Outflow) {
-    b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
-    b.table = read_time_table(t, "table", t.choice_or("repeat", "once", {"once", "periodic"}),
-                              scene_file);
-  }
-  b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
-  t.finish();
-  return b;
-}
-
-/// Discs or spheres at rest from a table `x,y,diameter` or `x,y,z,diameter` in m, beside the scene.
-void read_grains(TableReader t, const std::string& scene_file, int d,
-                 std::vector<ObstacleScene>& obstacles) {
-  const std::string name = t.text_or("file", "");
-  t.finish();
-  if (name.empty()) return;
-  const auto path = std::filesystem::path(scene_file).parent_path() / name;
-  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
-    t.fail("file", "= \"" + name + "\": " + problem, "put a table of grains beside the scene");
-  t.note("content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
-  std::ifstream table(path);
-  std::string line;
-  std::getline(table, line);
-  const std::string columns = d == 2 ? "x,y,diameter" : "x,y,z,diameter";
-  const auto beginning = [&line] { return line.size() > 60 ? line.substr(0, 60) + "…" : line; };
-  if (line != columns)
-    t.fail("file", "begins with '" + beginning() + "'", "the first line is " + columns + " (in m)");
-  for (int number = 2; std::getline(table, line); ++number) {
-    ObstacleScene o;
-    o.round = o.grain = true;
-    char rest = 0;
-    double v[4] = {0.0, 0.0, 0.0, 0.0};
-    const int read =
-        d == 2 ? std::sscanf(line.c_str(), "%lf,%lf,%lf%c", v, v + 1, v + 3, &rest)
-               : std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf%c", v, v + 1, v + 2, v + 3, &rest);
-    const bool finite = std::isfinite(v[0] + v[1] + v[2] + v[3]);
-    if (read != d + 1 || !finite || !(v[3] > 0.0))
-      t.fail("file",
-             fmt::format("line {}: '{}' is not {} finite numbers, the last of them positive",
-                         number, beginning(), d + 1),
-             "give " + columns + " in m");
-    o.centre = {v[0], v[1], v[2]};
-    o.diameter = v[3];
-    obstacles.push_back(o);
-  }
-}
-
 InitialScene read_initial(TableReader t, int d) {
   using Kind = InitialScene::Kind;
   InitialScene i;
@@ -392,87 +165,6 @@ InitialScene read_initial(TableReader t, int d) {
   i.perturbation = t.number_or("perturbation", i.perturbation, Bounds::non_negative(), "");
   t.finish();
   return i;
-}
-
-/// What depends on more than one table: the viscosity at the typical shear rate, and the place of
-/// Smagorinsky's constant.
-void settle_viscosity(const TableReader& root, Scene& scene) {
-  ViscosityScene& law = scene.fluid.law;
-  double& constant = scene.numerics.smagorinsky;
-  if (law.smagorinsky > 0.0 && constant > 0.0)
-    root.fail("fluid.viscosity.smagorinsky", "stands beside numerics.smagorinsky",
-              "give one of them");
-  constant = std::max(constant, law.smagorinsky);
-  if (!law.shear_rate) law.shear_rate = typical_shear_rate(scene);
-  scene.fluid.viscosity = ViscosityLaw(scene.fluid, *law.shear_rate).reference();
-}
-
-std::string sensor_name(TableReader& t) {
-  const std::string name = t.text_or("name", "");
-  const bool plain = !name.empty() && name.size() <= 60 &&
-                     std::all_of(name.begin(), name.end(), [](unsigned char c) {
-                       return std::isalnum(c) || c == '_' || c == '-';
-                     });
-  if (!plain)
-    t.fail("name", name.empty() ? "is missing" : "= \"" + name + "\" cannot name a file",
-           "give letters, digits, _ and -: its table is sensor-NAME.csv");
-  return name;
-}
-
-/// A sensor's line, plane or side.
-SensorScene read_sensor(TableReader t, const BoxScene& box) {
-  using Kind = SensorScene::Kind;
-  SensorScene s;
-  const int d = box.dimension;
-  s.name = sensor_name(t);
-  if (!t.has("kind")) t.fail("kind", "is missing", "give line, plane or side");
-  const std::string kind = t.choice_or("kind", "", {"line", "plane", "side"});
-  s.kind = kind == "line" ? Kind::Line : kind == "side" ? Kind::Side : Kind::Plane;
-  s.every = t.number_or("every", 0.0, Bounds::non_negative(), "s");
-  s.from = box.origin;
-  s.to = box.origin + box.size;
-  if (s.kind == Kind::Line) {
-    s.from = t.vector("from", d, "[m]");
-    s.to = t.vector("to", d, "[m]");
-    s.count = t.optional_integer("count", 2).value_or(20);
-  } else if (s.kind == Kind::Plane) {
-    std::vector<std::string> axes{"x", "y", "z"};
-    axes.resize(d);
-    if (!t.has("axis")) t.fail("axis", "is missing", "give the plane's normal, as \"x\"");
-    s.axis = t.choice_or("axis", "", axes)[0] - 'x';
-    s.at = t.number("at", {box.origin[s.axis], box.origin[s.axis] + box.size[s.axis]}, "m");
-    if (t.has("from")) s.from = t.vector("from", d, "[m]");
-    if (t.has("to")) s.to = t.vector("to", d, "[m]");
-  } else {
-    std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
-    sides.resize(2 * d);
-    if (!t.has("side"))
-      t.fail("side", "is missing", fmt::format("give one of: {}", fmt::join(sides, ", ")));
-    const std::string side = t.choice_or("side", "", sides);
-    s.side = static_cast<SideName>(std::find(sides.begin(), sides.end(), side) - sides.begin());
-  }
-  t.finish();
-  return s;
-}
-
-/// Numbers of particles. What is no whole number is refused.
-std::vector<std::int64_t> read_probe_particles(TableReader& t) {
-  std::vector<std::int64_t> ids;
-  for (const double id : t.numbers_or("probe_particles", {}, {1.0, 9e15}, "")) {
-    if (id != std::floor(id))
-      t.fail("probe_particles", fmt::format("holds {}, which is no particle's number", id),
-             "give ids, as [1, 5]");
-    ids.push_back(static_cast<std::int64_t>(id));
-  }
-  return ids;
-}
-
-AverageScene read_average(TableReader t) {
-  AverageScene a;
-  a.from = t.number_or("from", 0.0, Bounds::non_negative(), "s");
-  a.every = t.number_or("every", 0.0, Bounds::non_negative(), "s");
-  t.finish();
-  return a;
 }
 
 Scene read_tables(const toml::table& merged, const std::vector<std::string>& files,
@@ -501,15 +193,7 @@ Scene read_tables(const toml::table& merged, const std::vector<std::string>& fil
   read_grains(root.optional_table("grains"), files.front(), d, scene.obstacles);
   scene.initial = read_initial(root.optional_table("initial"), d);
   settle_viscosity(root, scene);
-  TableReader output = root.optional_table("output");
-  scene.output.fields_every = output.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
-  scene.output.probe_every = output.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
-  scene.output.points = output.vectors_or_none("points", d, "[m]");
-  scene.output.probe_particles = read_probe_particles(output);
-  output.finish();
-  if (root.has("average")) scene.output.average = read_average(root.table("average"));
-  for (const TableReader& t : root.tables("sensor"))
-    scene.output.sensors.push_back(read_sensor(t, scene.box));
+  scene.output = read_output(root, scene.box);
   root.finish();
   return scene;
 }

@@ -78,10 +78,6 @@ class Fluid {
   void set_body_force(const Vec3& force);
   /// On a cell in the coming step.
   Vec3 body_force() const;
-  /// To be called after the last wall was added.
-  void prepare_walls() {
-    if (cover_) cover_->update({});
-  }
   /// Places the solids for the next step. Needs a scheme, or a solid term in the kernel's choice.
   void place(std::span<const Body> bodies);
 
@@ -159,7 +155,10 @@ class Fluid {
   std::map<std::string, double> bytes() const;
 
  private:
+  void prepare_bodies(const EsotericPull& stream);
+  void stream_and_collide(EsotericPull& stream, bool barrier);
   void sweep_and_exchange(EsotericPull& stream);
+  void act_on_links(const EsotericPull& stream, std::int64_t step, const AfterStep& after_each);
   void make_steps(std::int64_t steps, const AfterStep& after_each);
   void make_steps_under_force(std::int64_t steps, const AfterStep& after_each);
   void set_body_force();

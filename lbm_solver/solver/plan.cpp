@@ -11,6 +11,7 @@
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/expected_error.h"
+#include "lbm_solver/solver/place_check.h"
 #include "lbm_solver/solver/scene_check.h"
 #include "lbm_solver/solver/viscosity_plan.h"
 

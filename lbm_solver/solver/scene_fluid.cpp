@@ -248,7 +248,6 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
   const InTime force =
       in_time(p, s.fluid.body_force_ramp, s.fluid.body_force_frequency, s.fluid.body_force_table);
   if (force.changes_after(0)) fluid.vary_body_force(force);
-  fluid.prepare_walls();
   if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
   const bool moving =
       p.kernel.solid_term != "none" &&

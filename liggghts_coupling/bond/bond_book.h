@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,6 +13,10 @@
 #include <vector>
 
 #include "liggghts_coupling/bond/bond_law.h"
+
+namespace LAMMPS_NS {
+class LAMMPS;
+}
 
 namespace dem {
 
@@ -84,7 +89,9 @@ struct BondTally {
 
 /// Of this process; a pair that two processes compute is counted by one.
 struct BondBook {
-  static BondBook& instance();
+  /// That of one LIGGGHTS. The pair style and the fixes own it together: it is made for the first
+  /// of them, and goes with the last.
+  static std::shared_ptr<BondBook> of(const LAMMPS_NS::LAMMPS* lammps);
 
   std::vector<BondRequest> requests;  ///< the first that wants a pair makes its bond
   BondRequest* request_of(const std::string& fix);

@@ -44,8 +44,7 @@ BreakEvent event_of(std::istringstream& line) {
   return e;
 }
 
-std::string save_mine(int rank, int ranks) {
-  const BondBook& book = BondBook::instance();
+std::string save_mine(const BondBook& book, int rank, int ranks) {
   std::string text = fmt::format("rank {} of {}\nwritten {}\n", rank, ranks, book.written_until);
   for (const auto& [name, member] : kEnergies)
     text += fmt::format("energy {} {}\n", name, book.energy.*member);
@@ -73,11 +72,11 @@ void take(const std::string& word, std::istringstream& line, BondBook& book) {
 
 }  // namespace
 
-std::string save_ledger(MPI_Comm world) {
+std::string save_ledger(const BondBook& book, MPI_Comm world) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(world, &rank);
   MPI_Comm_size(world, &ranks);
-  const std::string mine = save_mine(rank, ranks);
+  const std::string mine = save_mine(book, rank, ranks);
   const int size = static_cast<int>(mine.size());
   std::vector<int> sizes(ranks), starts(ranks);
   MPI_Gather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, world);
@@ -88,11 +87,10 @@ std::string save_ledger(MPI_Comm world) {
   return all;
 }
 
-void load_ledger(const std::string& text, MPI_Comm world) {
+void load_ledger(const std::string& text, BondBook& book, MPI_Comm world) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(world, &rank);
   MPI_Comm_size(world, &ranks);
-  BondBook& book = BondBook::instance();
   book.broken.clear();
   book.events.clear();
   book.energy = {};

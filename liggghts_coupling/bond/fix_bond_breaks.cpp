@@ -81,14 +81,14 @@ int FixBondBreaks::setmask() {
 void FixBondBreaks::init() {
   if (comm->me != 0 || file_) return;
   // breaks that were not written yet when the run was stopped, the ledger has
-  const long ledger = BondBook::instance().written_until;
+  const long ledger = bonds_->written_until;
   const auto now = static_cast<long>(update->ntimestep);
   open(now > 0 ? kept_lines(path_, ledger >= 0 ? ledger : now) : "");
 }
 
 /// The coupled run has begun since: what was written before it lies before the time 0.
 void FixBondBreaks::move_times() {
-  const long first_step = BondBook::instance().first_step;
+  const long first_step = bonds_->first_step;
   if (first_step == first_step_ || !file_) return;
   first_step_ = first_step;
   std::istringstream before(kept_lines(path_, std::numeric_limits<long>::max()));
@@ -119,7 +119,7 @@ void FixBondBreaks::end_of_step() {
 /// Gathers the events of all ranks; in the file they are in the order of steps and ids.
 void FixBondBreaks::write() {
   move_times();
-  std::vector<BreakEvent>& mine = BondBook::instance().events;
+  std::vector<BreakEvent>& mine = bonds_->events;
   const int bytes = static_cast<int>(mine.size() * sizeof(BreakEvent));
   std::vector<int> sizes(comm->nprocs), starts(comm->nprocs);
   MPI_Gather(&bytes, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, world);
@@ -130,7 +130,7 @@ void FixBondBreaks::write() {
   MPI_Gatherv(mine.data(), bytes, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE, 0,
               world);
   mine.clear();
-  BondBook::instance().written_until = static_cast<long>(update->ntimestep);
+  bonds_->written_until = static_cast<long>(update->ntimestep);
   std::sort(all.begin(), all.end(), [](const BreakEvent& a, const BreakEvent& b) {
     return std::tuple(a.step, a.first, a.second) < std::tuple(b.step, b.first, b.second);
   });
@@ -147,7 +147,7 @@ void FixBondBreaks::write() {
 }
 
 void FixBondBreaks::check_counts() {
-  const BondBook& book = BondBook::instance();
+  const BondBook& book = *bonds_;
   const long mine[3] = {book.tally.created, book.intact, book.tally.gone()};
   long all[3];
   MPI_Allreduce(mine, all, 3, MPI_LONG, MPI_SUM, world);
@@ -164,7 +164,7 @@ void FixBondBreaks::check_counts() {
 }
 
 double FixBondBreaks::compute_vector(int n) {
-  const BondBook& b = BondBook::instance();
+  const BondBook& b = *bonds_;
   const std::array<double, 11> values{static_cast<double>(b.intact),
                                       static_cast<double>(b.tally.tension),
                                       static_cast<double>(b.tally.shear),

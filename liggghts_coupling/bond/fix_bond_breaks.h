@@ -10,6 +10,8 @@
 #include <fix.h>
 // clang-format on
 
+#include "liggghts_coupling/bond/bond_book.h"
+
 namespace dem {
 
 /// fix ID all bond/breaks every N file FILE
@@ -34,6 +36,7 @@ class FixBondBreaks final : public LAMMPS_NS::Fix {
   double compute_vector(int n) override;
 
  private:
+  std::shared_ptr<BondBook> bonds_ = BondBook::of(lmp);
   void open(const std::string& kept);
   void move_times();
   void write();

@@ -111,11 +111,11 @@ FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     error->fix_error(FLERR, this,
                      "takes 'list' or 'notch'; leave what the notch cuts out of the list");
   agree_on_spread(spread, seed);
-  BondBook::instance().requests.push_back(request);
+  bonds_->requests.push_back(request);
 }
 
 FixBondCreate::~FixBondCreate() {
-  std::erase_if(BondBook::instance().requests, [&](const BondRequest& r) { return r.fix == id; });
+  std::erase_if(bonds_->requests, [&](const BondRequest& r) { return r.fix == id; });
 }
 
 int FixBondCreate::setmask() {
@@ -124,7 +124,7 @@ int FixBondCreate::setmask() {
 
 /// The strength of a bond is found anew from both at every step: they hold for all bonds.
 void FixBondCreate::agree_on_spread(double spread, unsigned long seed) {
-  BondBook& book = BondBook::instance();
+  BondBook& book = *bonds_;
   if (!book.has_spread) {
     book.spread = spread;
     book.seed = seed;
@@ -185,7 +185,7 @@ void FixBondCreate::post_run() {
 /// LIGGGHTS knows the bonds of a particle by its id and those of its partners.
 void FixBondCreate::refuse_other_ids() {
   const auto ids = std::exchange(ids_, {});
-  if (!is_first() || sum(BondBook::instance().tally.created, world) == 0) return;
+  if (!is_first() || sum(bonds_->tally.created, world) == 0) return;
   long others = 0;
   for (int i = 0; i < atom->nlocal; ++i) {
     const auto before = ids.find({atom->x[i][0], atom->x[i][1], atom->x[i][2]});
@@ -209,7 +209,7 @@ void FixBondCreate::count_leaving() {
   if (sum(static_cast<long>(mine.size()), world) == 0) return;
   LAMMPS_NS::FixContactHistory& pairs = *pair->get_fix_history();
   pairs.setup_pre_exchange();  // brings them up to date; to do so twice changes nothing
-  BondBook& book = BondBook::instance();
+  BondBook& book = *bonds_;
   std::vector<int> ids;
   for (const int i : mine) ids.push_back(atom->tag[i]);
   const std::set<int> gone = everywhere(ids, world);
@@ -224,7 +224,7 @@ void FixBondCreate::count_leaving() {
 
 /// Bonds that have vanished between two runs: with particles that the script has taken out.
 void FixBondCreate::count_lost() const {
-  BondBook& book = BondBook::instance();
+  BondBook& book = *bonds_;
   const BondTally& t = book.tally;
   const long lost = sum(t.created - book.intact - t.gone(), world);
   if (lost <= 0 || comm->me != 0) return;
@@ -241,7 +241,7 @@ void FixBondCreate::setup(int) {
   if (later_run && is_first()) count_lost();
   if (done_) return;
   done_ = true;
-  const BondRequest& request = *BondBook::instance().request_of(id);
+  const BondRequest& request = *bonds_->request_of(id);
   int ignored = request.open ? 1 : 0;  // the bonds' pair styles take the wish
   MPI_Allreduce(MPI_IN_PLACE, &ignored, 1, MPI_INT, MPI_MIN, world);
   if (ignored)
@@ -262,13 +262,13 @@ void FixBondCreate::setup(int) {
 
 /// @param made, found  bonds, and pairs that it wants, of all processes
 void FixBondCreate::tell(long made, long found) const {
-  const long all = sum(BondBook::instance().tally.created, world);
+  const long all = sum(bonds_->tally.created, world);
   if (comm->me != 0) return;
   if (found == 0)
     fmt::print(stderr,
                "liggghts | warning | fix bond/create {} has made no bonds: no two particles {}are "
                "within its gap; raise it, or let the packing come to rest before\n",
-               id, BondBook::instance().request_of(id)->types ? "of its types " : "");
+               id, bonds_->request_of(id)->types ? "of its types " : "");
   std::string text = fmt::format("bonds created: {} by fix bond/create {}", made, id);
   if (found > made) text += fmt::format(" ({} of its pairs were bonded before)", found - made);
   if (all != made) text += fmt::format("; {} in all", all);
@@ -280,9 +280,9 @@ void FixBondCreate::tell(long made, long found) const {
 /// that is made without, and the pairs of this run keep their history up to what was known before.
 void FixBondCreate::check_reach() {
   double gap = 0.0;
-  MPI_Allreduce(&BondBook::instance().largest_gap, &gap, 1, MPI_DOUBLE, MPI_MAX, world);
-  BondBook::instance().largest_gap = gap;
-  const double reserved = BondBook::instance().reserved_gap;
+  MPI_Allreduce(&bonds_->largest_gap, &gap, 1, MPI_DOUBLE, MPI_MAX, world);
+  bonds_->largest_gap = gap;
+  const double reserved = bonds_->reserved_gap;
   if (gap <= reserved || update->firststep == update->laststep) return;
   error->fix_error(FLERR, this,
                    fmt::format("particles press on each other: a bond made there is without force "
@@ -312,7 +312,7 @@ void FixBondCreate::warn_of_long_step() const {
 }
 
 void FixBondCreate::write_restart(FILE* file) {
-  const BondBook& book = BondBook::instance();
+  const BondBook& book = *bonds_;
   double gap = 0.0;
   MPI_Reduce(&book.largest_gap, &gap, 1, MPI_DOUBLE, MPI_MAX, 0, world);
   std::array<double, kKept> kept{kLayout, done_ ? 1.0 : 0.0, book.spread,
@@ -334,7 +334,7 @@ void FixBondCreate::restart(char* buffer) {
   std::memcpy(kept.data(), buffer, sizeof kept);
   done_ = kept[1] != 0.0;
   if (!done_) return;
-  BondBook& book = BondBook::instance();
+  BondBook& book = *bonds_;
   book.request_of(id)->open = false;
   book.spread = kept[2];
   book.seed = static_cast<unsigned long>(kept[3]);

@@ -42,6 +42,7 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
   void restart(char* buffer) override;
 
  private:
+  std::shared_ptr<BondBook> bonds_ = BondBook::of(lmp);
   std::set<std::pair<long, long>> read_list(const char* path);
   Notch read_notch(char** ends);
   void agree_on_spread(double spread, unsigned long seed);

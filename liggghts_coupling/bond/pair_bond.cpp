@@ -69,7 +69,7 @@ class BondModel : protected Pointers {
     if (is_wall)
       fail(std::string(Kind::name) + " is no wall model; use fix wall/gran model hooke/stiffness");
     bonded_ = history->add_history_value("bonded", "0");
-    BondBook::instance().column = bonded_;
+    book_->column = bonded_;
     history->add_history_value("bondRestOverlap", "0");
     // "1": seen from the other particle, with the other sign
     for (const char* name : {"shearForceX", "shearForceY", "shearForceZ"})
@@ -115,15 +115,14 @@ class BondModel : protected Pointers {
   void endSurfacesIntersect(SurfacesIntersectData&, LAMMPS_NS::TriMesh*, ForceData&, ForceData&) {}
 
   void beginPass(SurfacesIntersectData& data, ForceData&, ForceData&) {
-    BondBook& book = BondBook::instance();
     if (!data.computeflag) return;
-    book.intact = 0;
-    book.energy.elastic = 0.0;
-    book.listed.clear();
+    book_->intact = 0;
+    book_->energy.elastic = 0.0;
+    book_->listed.clear();
   }
   void endPass(SurfacesIntersectData& data, ForceData&, ForceData&) {
     if (!data.computeflag) return;
-    for (dem::BondRequest& request : BondBook::instance().requests) request.open = false;
+    for (dem::BondRequest& request : book_->requests) request.open = false;
   }
 
   void surfacesIntersect(SurfacesIntersectData& data, ForceData& on_i, ForceData& on_j) {
@@ -164,15 +163,14 @@ class BondModel : protected Pointers {
   /// Bonds may stretch across a gap: the range in which a pair keeps its history must cover it,
   /// or LIGGGHTS would drop the bond without a word.
   void reserve_range(PropertyRegistry& registry) {
-    BondBook& book = BondBook::instance();
-    double gap = book.largest_gap;
-    for (const dem::BondRequest& request : book.requests) gap = std::max(gap, request.gap);
+    double gap = book_->largest_gap;
+    for (const dem::BondRequest& request : book_->requests) gap = std::max(gap, request.gap);
     double stretch = 0.0;
     int worst[2] = {1, 1};
     for (int a = 1; a <= atom->ntypes; ++a)
       for (int b = 1; b <= atom->ntypes; ++b) {
         if (bond_normal_[a][b] <= 0.0) continue;
-        const double here = tensile_[a][b] * (1.0 + book.spread) / bond_normal_[a][b];
+        const double here = tensile_[a][b] * (1.0 + book_->spread) / bond_normal_[a][b];
         if (here <= stretch) continue;
         stretch = here;
         worst[0] = a;
@@ -188,7 +186,7 @@ class BondModel : protected Pointers {
           "diameter, {:.4g} m. Raise bondNormalStiffness or lower bondTensileStrength",
           worst[0], worst[1], stretch, gap, (kLargestFactor - 1.0) / 1.05 * smallest, smallest));
     neighbor->register_contact_dist_factor(std::max(factor, 1.01));
-    book.reserved_gap = (std::max(factor, 1.01) - 1.0) * smallest - stretch;
+    book_->reserved_gap = (std::max(factor, 1.01) - 1.0) * smallest - stretch;
     const double meet = 2.0 * registry.max_radius() * factor + neighbor->skin;
     for (int k = 0; k < domain->dimension; ++k)
       if (domain->periodicity[k] && domain->prd[k] < 2.0 * meet)
@@ -204,7 +202,7 @@ class BondModel : protected Pointers {
   bool for_wishes(const SurfacesIntersectData& d, double overlap, Each&& each) const {
     bool any = false;
     if (!d.computeflag) return any;
-    for (dem::BondRequest& request : BondBook::instance().requests) {
+    for (dem::BondRequest& request : book_->requests) {
       if (!request.open) continue;
       const double exact = overlap < 0.0 ? d.radsum - std::sqrt(d.rsq) : overlap;
       if (!request.wants({.ids = {atom->tag[d.i], atom->tag[d.j]},
@@ -229,10 +227,9 @@ class BondModel : protected Pointers {
       request.found += counted;
       if (memory.bonded) return;
       dem::make_bond(memory, contact, bond, overlap);
-      BondBook& book = BondBook::instance();
-      book.largest_gap = std::max({book.largest_gap, -overlap, -memory.rest_overlap});
+      book_->largest_gap = std::max({book_->largest_gap, -overlap, -memory.rest_overlap});
       request.made += counted;
-      book.tally.created += counted;
+      book_->tally.created += counted;
     });
   }
 
@@ -262,9 +259,8 @@ class BondModel : protected Pointers {
             damping_[a][b]};
   }
   dem::BondLaw bond_law(const SurfacesIntersectData& d) const {
-    const BondBook& book = BondBook::instance();
     const double factor =
-        dem::strength_factor(atom->tag[d.i], atom->tag[d.j], book.spread, book.seed);
+        dem::strength_factor(atom->tag[d.i], atom->tag[d.j], book_->spread, book_->seed);
     const int a = d.itype, b = d.jtype;
     dem::BondLaw law{
         bond_normal_[a][b], bond_shear_[a][b], factor * tensile_[a][b], factor * shear_[a][b], {}};
@@ -333,25 +329,24 @@ class BondModel : protected Pointers {
 
   void book(const SurfacesIntersectData& d, const dem::PairMotion& m, const dem::PairResponse& r,
             bool bonded, double arm, bool advance) {
-    BondBook& book = BondBook::instance();
     if (bonded) {
-      ++book.intact;
-      if (book.list_wanted) book.listed.emplace_back(atom->tag[d.i], atom->tag[d.j]);
+      ++book_->intact;
+      if (book_->list_wanted) book_->listed.emplace_back(atom->tag[d.i], atom->tag[d.j]);
     }
     if (ledger_) {
-      book.energy.elastic += r.energy.elastic;
+      book_->energy.elastic += r.energy.elastic;
       if (advance) {
-        book.energy.friction += r.energy.friction;
-        book.energy.damping += r.energy.damping;
-        book.energy.released += r.energy.released;
-        book.energy.stiffness_change += r.energy.stiffness_change;
+        book_->energy.friction += r.energy.friction;
+        book_->energy.damping += r.energy.damping;
+        book_->energy.released += r.energy.released;
+        book_->energy.stiffness_change += r.energy.stiffness_change;
       }
     }
     if (r.broken == dem::Break::None || !advance) return;
-    ++(r.broken == dem::Break::Tension ? book.tally.tension : book.tally.shear);
+    ++(r.broken == dem::Break::Tension ? book_->tally.tension : book_->tally.shear);
     const long a = atom->tag[d.i], b = atom->tag[d.j];
     dem::BreakEvent event{static_cast<long>(update->ntimestep),
-                          static_cast<double>(update->ntimestep - book.first_step) * update->dt,
+                          static_cast<double>(update->ntimestep - book_->first_step) * update->dt,
                           std::min(a, b),
                           std::max(a, b),
                           r.broken,
@@ -362,10 +357,11 @@ class BondModel : protected Pointers {
       event.place[k] = atom->x[d.i][k] - arm * m.normal[k];
       if (a > b) event.normal[k] = -event.normal[k];
     }
-    book.events.push_back(event);
-    book.broken.push_back(event);
+    book_->events.push_back(event);
+    book_->broken.push_back(event);
   }
 
+  std::shared_ptr<BondBook> book_ = BondBook::of(lmp);
   int bonded_ = 0;  // first of the values of a pair's history: PairMemory
   double exponent_ = 1.0;
   bool ledger_ = false;
@@ -391,17 +387,6 @@ static void add_model() {
 }  // namespace LIGGGHTS::ContactModels
 
 namespace dem {
-
-BondBook& BondBook::instance() {
-  static BondBook book;
-  return book;
-}
-
-BondRequest* BondBook::request_of(const std::string& fix) {
-  const auto found = std::find_if(requests.begin(), requests.end(),
-                                  [&](const BondRequest& r) { return r.fix == fix; });
-  return found == requests.end() ? nullptr : &*found;
-}
 
 void register_bonds() {
   LIGGGHTS::ContactModels::add_model<LIGGGHTS::ContactModels::ContactBond>();

@@ -50,7 +50,7 @@ FixLbmCouple::FixLbmCouple(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     job.session->set_timeout(*arguments.timeout);
     protocol::limit_waits(*arguments.timeout);
   }
-  BondBook::instance().list_wanted = true;  // with the first states, too
+  bonds_->list_wanted = true;  // with the first states, too
   if (!arguments.record.empty()) begin_recording(arguments.record);
 }
 
@@ -67,7 +67,7 @@ void FixLbmCouple::init() {
   if (!atom->radius_flag || !atom->rmass_flag || !atom->omega_flag || !atom->torque_flag)
     fail("needs spheres; use atom_style granular");
   if (modify->n_fixes_style("lbm/couple") != 1) fail("only one fix lbm/couple may exist");
-  if (!coupling_->begun()) BondBook::instance().list_wanted = true;  // for the picture at t = 0
+  if (!coupling_->begun()) bonds_->list_wanted = true;  // for the picture at t = 0
   const int here = modify->my_index(this);
   frozen_groups_ = 0;
   for (int i = 0; i < modify->nfix; ++i) {
@@ -112,8 +112,7 @@ void FixLbmCouple::begin() {
   if (*mine.particles > 0) SolidHello(lmp, groupbit, coupling_->substeps()).expect_motion();
   step_ = update->ntimestep;
   time_step_ = update->dt;
-  BondBook::instance().first_step =
-      static_cast<long>(step_ - mine.first_interval * coupling_->substeps());
+  bonds_->first_step = static_cast<long>(step_ - mine.first_interval * coupling_->substeps());
   coupling_->begin(mine);
   waited_before_ = job.session->waited();
 }

@@ -4,9 +4,11 @@
 #include <fix.h>
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "liggghts_coupling/bond/bond_book.h"
 #include "protocol/solid/particle_coupling.h"
 
 namespace dem {
@@ -87,6 +89,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
   protocol::Hello hello() const;
   [[noreturn]] void fail(const std::string& text) const;
 
+  std::shared_ptr<BondBook> bonds_ = BondBook::of(lmp);
   std::optional<protocol::ParticleCoupling> coupling_;
   double** held_ = nullptr;        ///< [nmax][kColumns]; force [N], torque [N m], …
   int frozen_groups_ = 0;          ///< whose forces fix freeze or setforce sets

@@ -77,7 +77,7 @@ void FixLbmCouple::note_particles() {
 /// Beside the particles, a line of text a value: the coupling interval, radii by type, particles
 /// that have left, the ledger of bonds.
 void FixLbmCouple::write_restart(FILE* file) {
-  const std::string ledger = save_ledger(world);
+  const std::string ledger = save_ledger(*bonds_, world);
   std::int64_t left = 0;
   MPI_Reduce(&left_, &left, 1, MPI_INT64_T, MPI_SUM, 0, world);
   if (comm->me != 0) return;
@@ -121,7 +121,7 @@ void FixLbmCouple::restart(char* buffer) {
     rest = lines.tellg();
   }
   try {
-    load_ledger(text.substr(static_cast<std::size_t>(rest)), world);
+    load_ledger(text.substr(static_cast<std::size_t>(rest)), *bonds_, world);
   } catch (const std::invalid_argument& error) {
     fail(std::string("the restart file cannot be read: ") + error.what());
   }

@@ -76,7 +76,7 @@ void FixLbmCouple::count_leaving() {
 /// process never had any.
 std::optional<protocol::SolidReport> FixLbmCouple::report() const {
   protocol::SolidReport report{.grains_left = left_};
-  const BondBook& book = BondBook::instance();
+  const BondBook& book = *bonds_;
   const BondTally& t = book.tally;
   if (t.created + t.gone() + book.intact == 0) return report;
   report.bonds = {book.intact, t.tension, t.shear, t.left, t.lost};
@@ -88,7 +88,7 @@ std::optional<protocol::SolidReport> FixLbmCouple::report() const {
 }
 
 void FixLbmCouple::note_wishes(std::uint32_t flags) {
-  BondBook::instance().list_wanted = flags & protocol::kWantBonds;
+  bonds_->list_wanted = flags & protocol::kWantBonds;
 }
 
 void FixLbmCouple::note_end() {

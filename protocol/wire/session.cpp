@@ -251,7 +251,9 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
       throw BadMessage(
           format("particle {} came without radius and mass at interval {}", o.id, next_interval_));
     if (!present.emplace(o.id, shape->second).second)
-      throw BadMessage(format("particle {} came twice at interval {}", o.id, next_interval_));
+      throw BadMessage(format(
+          "particle {} came twice at interval {}: each solid rank gives only those that it owns",
+          o.id, next_interval_));
     order_[o.rank][o.record] = arrival_.particles.size();
     arrival_.particles.push_back({batches[o.rank].states[o.record], shape->second});
     ids_.push_back(o.id);

@@ -102,7 +102,6 @@ double between_plates(const Vec3& direction, int n, double thick, double offset)
   choice.lattice = flat ? "D2Q9" : "D3Q19";
   Fluid fluid(domain, choice);
   fluid.add_wall({0, 0, 0}, {n, n, flat ? 1 : n});
-  fluid.prepare_walls();
   // Distance into the gap, 0 … period; the plate lies beyond `gap`.
   const auto place = [&](int x, int y, int z) {
     const Vec3 at(x + 0.5, y + 0.5, flat ? 0.0 : z + 0.5);

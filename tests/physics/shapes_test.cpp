@@ -90,7 +90,6 @@ TEST(Mesh, OfABoxOnTheCellsIsABlock) {
   const auto run = [&](auto&& add) {
     Fluid fluid(kCube, choice("D3Q19", {1e-6, 3e-7, 0.0}));
     add(fluid);
-    fluid.prepare_walls();
     fluid.advance(101);
     std::vector<double> all;
     for (int z = 0; z < 16; ++z)

@@ -18,7 +18,6 @@ Fluid steady(const Domain& domain, const char* lattice, const std::vector<CellBo
   choice.lattice = lattice;
   Fluid fluid(domain, choice);
   for (const CellBox& block : blocks) fluid.add_wall(block.from, block.to);
-  fluid.prepare_walls();
   fluid.advance(steps);
   return fluid;
 }
@@ -62,7 +61,6 @@ TEST(BlockLoads, AreTheSameWithinARegion) {
   Fluid one(channel, choice), together(channel, choice);
   for (Fluid* fluid : {&one, &together}) {
     fluid->add_wall(block.from, block.to);
-    fluid->prepare_walls();
     fluid->vary_body_force(InTime{5.0, 0.0});
   }
   const BlockLoads of_one(one, {block}), of_together(together, {block});
@@ -95,7 +93,6 @@ TEST(BlockLoads, GoWithTheLoadsOfBodies) {
   };
   for (Fluid* fluid : {&one, &together}) {
     fluid->add_wall({10, 3, 0}, {18, 8, 1});
-    fluid->prepare_walls();
     fluid->place(disc);
   }
   for (int step = 0; step < 9; ++step) {

@@ -59,7 +59,6 @@ TEST(PlaneFlow, IsTheSameThroughEveryPlaneOfASteadyFlow) {
       .force = true, .solid_term = "resistance", .parameters = {.tau = kTau, .force_x = kForce}};
   Fluid fluid({12, kHeight, Side::Periodic, Side::Wall}, choice);
   fluid.add_wall({4, 4, 0}, {7, 9, 1});
-  fluid.prepare_walls();
   fluid.advance(20000);
   const double first = PlaneFlow::of(fluid, column(0), 0).volume;
   EXPECT_GT(first, 1e-5);

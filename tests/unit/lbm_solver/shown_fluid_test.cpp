@@ -166,7 +166,6 @@ TEST(ShownFluid, WallsRest) {
   const Domain domain{20, 12, Side::Periodic, Side::Periodic};
   Fluid fluid(domain, choice("layered_holdych"));
   fluid.add_wall({5, 0, 0}, {8, 6, 1});
-  fluid.prepare_walls();
   fluid.advance(100);
   const Shown shown(fluid);
   each_cell(domain, [&](std::size_t i, int x, int y, int) {
@@ -193,7 +192,6 @@ TEST(ShownFluid, DensityInSolidsDoesNotDrift) {
       test::add_pressure(fluid, test::part(SideName::Top, 14, 26), -0.009, {1000.0, 0.0});
       fluid.add_wall({10, 20, 0}, {14, 40, 1});
       fluid.add_wall({26, 20, 0}, {30, 40, 1});
-      fluid.prepare_walls();
       const std::vector<Body> grain{{1, {20.3, 12.1}, 5.0, {0.0, 0.0}, 0.0}};
       fluid.place(grain);
       double drift = 0.0;
@@ -266,7 +264,6 @@ TEST(ShownFluid, PointsAtASurfaceAndInABody) {
   const Domain domain{20, 12, Side::Periodic, Side::Periodic};
   Fluid fluid(domain, choice("holdych"));
   fluid.add_wall({8, 0, 0}, {12, 12, 1});
-  fluid.prepare_walls();
   each_cell(domain, [&](std::size_t, int x, int y, int) {
     fluid.set_equilibrium(x, y, x < 8 || x >= 12 ? 1.01 : 1.5, {0.02, 0.0});
   });

@@ -38,7 +38,8 @@ def first_column(text):
 
 
 def scene_keys():
-    return found(CALL, read("lbm_solver/io/scene_reader.cpp") + read("lbm_solver/io/obstacle_reader.cpp")), \
+    readers = sorted((ROOT / "lbm_solver/io").glob("*_reader.cpp"))
+    return found(CALL, "".join(reader.read_text() for reader in readers)), \
         first_column(section(SCENE, "## Keys of a scene")) - {"NAME"}
 
 

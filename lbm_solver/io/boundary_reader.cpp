@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/io/boundary_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lbm_solver/io/time_table_reader.h"
+
+namespace lbm {
+namespace {
+
+/// `from` and `to` along a side: a number, in three dimensions two.
+void read_extent(TableReader& t, const BoxScene& box, int axis, BoundaryScene& b) {
+  const int first = axis == 0 ? 1 : 0;
+  const auto low = [&](int a) { return box.origin[a]; };
+  const auto high = [&](int a) { return box.origin[a] + box.size[a]; };
+  if (box.dimension == 2) {
+    b.from[0] = t.optional_number("from", {low(first), high(first)}, "m");
+    b.to[0] = t.optional_number("to", {b.from[0].value_or(low(first)), high(first)}, "m");
+    return;
+  }
+  const int axes[] = {first, axis == 2 ? 1 : 2};
+  for (auto* end : {&b.from, &b.to}) {
+    const char* key = end == &b.from ? "from" : "to";
+    if (!t.has(key)) continue;
+    const Vec3 pair = t.vector(key, 2, "[m] along the side's two axes");
+    for (int k = 0; k < 2; ++k) {
+      if (pair[k] < low(axes[k]) || pair[k] > high(axes[k]))
+        t.fail(key, fmt::format("holds {} m, which is outside the side", pair[k]),
+               fmt::format("stay within {} … {} m", low(axes[k]), high(axes[k])));
+      (*end)[k] = pair[k];
+    }
+  }
+}
+
+}  // namespace
+
+BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::string& scene_file) {
+  using Kind = BoundaryScene::Kind;
+  BoundaryScene b;
+  std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
+  sides.resize(2 * box.dimension);
+  if (!t.has("side"))
+    t.fail("side", "is missing", fmt::format("give one of: {}", fmt::join(sides, ", ")));
+  const std::string side = t.choice_or("side", "", sides);
+  b.side = static_cast<SideName>(std::find(sides.begin(), sides.end(), side) - sides.begin());
+  const int axis = axis_of(b.side);
+  if (box.sides[axis] == SideKind::Periodic)
+    t.fail("side", "= \"" + side + "\" is periodic", "make the box's sides there \"wall\"");
+  if (!t.has("kind"))
+    t.fail("kind", "is missing", "give velocity, moving_wall, pressure or outflow");
+  const std::string kind =
+      t.choice_or("kind", "", {"velocity", "moving_wall", "pressure", "outflow"});
+  b.kind = kind == "pressure" ? Kind::Pressure : kind == "outflow" ? Kind::Outflow : Kind::Velocity;
+  read_extent(t, box, axis, b);
+  if (b.kind == Kind::Velocity) {
+    b.velocity = t.vector("velocity", box.dimension, "[m/s]");
+    b.parabolic = t.choice_or("profile", "uniform", {"uniform", "parabolic"}) == "parabolic";
+    if (kind == "moving_wall" && b.velocity[axis] != 0.0)
+      t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
+  } else {
+    b.pressure = t.number_or("pressure", 0.0, {}, "Pa");
+  }
+  if (b.kind != Kind::Outflow) {
+    b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
+    b.table = read_time_table(t, "table", t.choice_or("repeat", "once", {"once", "periodic"}),
+                              scene_file);
+  }
+  b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
+  t.finish();
+  return b;
+}
+
+}  // namespace lbm

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// What the coming steps of a fluid depend on, saved and loaded.
+#include <stdexcept>
+
+#include "lbm_solver/solver/fluid.h"
+
+namespace lbm {
+namespace {
+
+/// Calls f(number, cell) for every cell of a block, in the order of Decomposition::gather.
+template <class F>
+void each_cell(const Cell3& n, F&& f) {
+  std::size_t number = 0;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) f(number++, x, y, z);
+}
+
+}  // namespace
+
+Record Fluid::save_boundary(std::size_t number) const {
+  Patch& patch = *patches_[number];
+  std::vector<double> lines;
+  for (std::size_t k = 0; k < patch.memory().size(); ++k)
+    lines.insert(lines.end(), {static_cast<double>(patch.links()[k].number), patch.memory()[k]});
+  lines = ranks_->collect(lines);
+  std::vector<double> links(lines.size() / 2);
+  for (std::size_t k = 0; k < lines.size(); k += 2)
+    links[static_cast<std::size_t>(lines[k])] = lines[k + 1];
+  Record record;
+  record.set("links", std::move(links));
+  record.set("mass_in", ranks_->collect_parts({patch.mass_in()}));
+  return record;
+}
+
+void Fluid::load_boundary(std::size_t number, const Record& record) {
+  const auto& links = record.get<std::vector<double>>("links");
+  std::vector<double>& memory = patches_[number]->memory();
+  for (std::size_t k = 0; k < memory.size(); ++k) {
+    const auto link = static_cast<std::size_t>(patches_[number]->links()[k].number);
+    if (link >= links.size()) throw std::invalid_argument("'links' is of another size");
+    memory[k] = links[link];
+  }
+  patches_[number]->restore_mass(
+      ranks_->own_part(record.get<std::vector<double>>("mass_in"), 1)[0]);
+}
+
+Record Fluid::save() const {
+  Record record;
+  const auto q_count = static_cast<std::size_t>(lattice().Q);
+  const Cell3& n = cells().size;
+  std::vector<double> mine(q_count * n[0] * n[1] * n[2]);
+  each_cell(n, [&](std::size_t number, int x, int y, int z) {
+    for (int q = 0; q < lattice().Q; ++q) mine[number * q_count + q] = arriving(q, x, y, z);
+  });
+  record.set("populations", ranks_->gather(std::move(mine), lattice().Q));
+  record.set("steps", steps_);
+  record.set("odd", std::int64_t{stream_.odd()});
+  for (std::size_t i = 0; i < patches_.size(); ++i)
+    record.set("boundary" + std::to_string(i + 1), save_boundary(i));
+  if (scheme_) record.set("scheme", scheme_->save());
+  if (two_steps_.on()) {
+    TwoStepLoads last = two_steps_;
+    if (loads_are_new_) last.remember(bodies_, cover_->loads());
+    record.set("loads", last.save(*ranks_));
+    if (!fixed_.empty()) {
+      TwoStepLoads fixed = fixed_two_steps_;
+      if (loads_are_new_) fixed.remember(fixed_, cover_->fixed_loads());
+      record.set("fixed_loads", fixed.save(*ranks_));
+    }
+  }
+  return record;
+}
+
+void Fluid::load(const Record& record) {
+  for (std::size_t i = 0; i < patches_.size(); ++i)
+    load_boundary(i, record.part("boundary" + std::to_string(i + 1)));
+  if (scheme_) scheme_->load(record.part("scheme"));
+  if (two_steps_.on()) {
+    two_steps_.load(record.part("loads"));
+    if (!fixed_.empty()) fixed_two_steps_.load(record.part("fixed_loads"));
+    loads_are_new_ = false;
+  }
+  const Cell3 n = cells().size, all = domain().cells();
+  const auto q_count = static_cast<std::size_t>(lattice().Q);
+  std::vector<double> populations;
+  if (ranks_->rank() == 0)
+    populations = record.list<double>("populations", q_count * all[0] * all[1] * all[2]);
+  populations = ranks_->scatter(std::move(populations), lattice().Q);
+  steps_ = record.integer("steps");
+  move_shapes();
+  stream_.set_odd(record.integer("odd") != 0);
+  if (force_in_time_.changes_after(0)) set_body_force();
+  each_cell(n, [&](std::size_t number, int x, int y, int z) {
+    for (int q = 0; q < lattice().Q; ++q) arriving(q, x, y, z) = populations[number * q_count + q];
+  });
+}
+
+}  // namespace lbm
