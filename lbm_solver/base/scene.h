@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "lbm_solver/base/motion.h"
 #include "lbm_solver/base/side.h"
 #include "lbm_solver/base/triangle_mesh.h"
 #include "lbm_solver/base/units.h"
@@ -92,8 +93,8 @@ struct ImageScene {
   Vec3 at;             ///< lower corner [m]
 };
 
-/// A solid that stays where it is: a disc or sphere (curved, it may spin), a block of whole cells,
-/// a mesh or an image.
+/// A solid that stays where it is, or moves as it is told: a disc or sphere (curved, it may spin),
+/// a block of whole cells, a mesh or an image. A block that moves is the mesh of a box.
 struct ObstacleScene {
   bool round = false;   ///< a disc, in three dimensions a sphere
   bool hollow = false;  ///< round, and solid outside
@@ -104,8 +105,13 @@ struct ObstacleScene {
   Vec3 from, to;          ///< corners of a block [m]
   std::optional<MeshScene> mesh;
   std::optional<ImageScene> image;
+  std::optional<MotionScene> motion;
 
   bool block() const { return !round && !mesh && !image; }
+  /// A drum: hollow and moving. It is mapped as a mesh, with a core that is no part of its load.
+  bool drum() const { return round && hollow && motion; }
+  /// Placed as a body, as grains are.
+  bool body() const { return round && !drum(); }
 };
 
 struct InitialScene {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <tuple>
 
 namespace lbm {
@@ -158,6 +159,57 @@ std::vector<double> mean_curvatures(const TriangleMesh& mesh) {
   for (std::size_t v = 0; v < sum.size(); ++v)
     if (area[v] > 0.0) sum[v] /= area[v];
   return sum;
+}
+
+TriangleMesh box_surface(const Vec3& low, const Vec3& high) {
+  TriangleMesh mesh;
+  for (unsigned k = 0; k < 8; ++k)
+    mesh.vertices.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(),
+                               k & 4 ? high.z() : low.z());
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+/// Rings of corners from below to above, closed by a corner at each end.
+TriangleMesh round_surface(const Vec3& centre, double radius, int dimension) {
+  constexpr unsigned around = 256;
+  const unsigned rings = dimension == 2 ? 2 : around / 2 - 1;
+  TriangleMesh mesh;
+  const auto z_of = [&](unsigned ring) {
+    return dimension == 2 ? (ring == 0 ? -1.0 : 1.0)
+                          : -radius * std::cos(std::numbers::pi * (ring + 1) / (rings + 1));
+  };
+  const double end = dimension == 2 ? 1.0 : radius;
+  mesh.vertices = {{0.0, 0.0, -end}, {0.0, 0.0, end}};
+  for (unsigned ring = 0; ring < rings; ++ring) {
+    const double z = z_of(ring), r = dimension == 2 ? radius : std::sqrt(radius * radius - z * z);
+    for (unsigned k = 0; k < around; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / around;
+      mesh.vertices.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+    }
+  }
+  const auto corner = [&](unsigned ring, unsigned k) { return 2 + ring * around + k % around; };
+  for (unsigned k = 0; k < around; ++k) {
+    mesh.triangles.push_back({0, corner(0, k + 1), corner(0, k)});
+    mesh.triangles.push_back({1, corner(rings - 1, k), corner(rings - 1, k + 1)});
+    for (unsigned ring = 0; ring + 1 < rings; ++ring) {
+      const unsigned a = corner(ring, k), b = corner(ring, k + 1), c = corner(ring + 1, k),
+                     d = corner(ring + 1, k + 1);
+      mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {a, d, c}});
+    }
+  }
+  const double exact =
+      std::numbers::pi * radius * radius * (dimension == 2 ? 2.0 : 4.0 / 3.0 * radius);
+  const double wider = dimension == 2 ? std::sqrt(exact / enclosed_volume(mesh))
+                                      : std::cbrt(exact / enclosed_volume(mesh));
+  for (Vec3& v : mesh.vertices) {
+    v.x() *= wider;
+    v.y() *= wider;
+    if (dimension == 3) v.z() *= wider;
+    v += centre;
+  }
+  return mesh;
 }
 
 }  // namespace lbm

@@ -38,6 +38,12 @@ double enclosed_volume(const TriangleMesh& mesh);
 /// Lower and upper corner of the box around a mesh.
 std::array<Vec3, 2> bounds(const TriangleMesh& mesh);
 
+/// The surface of the box between two corners.
+TriangleMesh box_surface(const Vec3& low, const Vec3& high);
+/// A sphere of many triangles, or a cylinder along z from -1 to 1, which is a disc in two
+/// dimensions; of the volume of the round one.
+TriangleMesh round_surface(const Vec3& centre, double radius, int dimension);
+
 /// A closed surface around the layer that lies within half a thickness of a surface, which may
 /// have rims.
 TriangleMesh thickened(const TriangleMesh& mesh, double thickness);

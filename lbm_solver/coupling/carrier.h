@@ -43,7 +43,7 @@ struct InnerShape {
 };
 
 /// The fluid in a carrier's place.
-struct InnerFluid {
+struct DisplacedFluid {
   double covered = 0.0;              ///< m_c: in covered cells [kg]
   double displaced = 0.0;            ///< m_d: in the place of the whole body [kg]
   double gyration2 = 0.0;            ///< I_c / m_c, of a clump its mean over the axes [m²]
@@ -55,7 +55,7 @@ struct InnerFluid {
 struct Carrier {
   std::size_t particle = 0;  ///< on the wire
   bool home = true;          ///< its centre is this rank's
-  InnerFluid inside;
+  DisplacedFluid inside;
   Velocities change;           ///< of velocities since the interval before; 0 for a new one
   Velocities mean_change;      ///< of the last intervals (LightRule)
   const Past* past = nullptr;  ///< null for a new one

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "lbm_solver/coupling/motion_words.h"
 #include "lbm_solver/io/stl_file.h"
 #include "protocol/wire/walls.h"
 
@@ -26,24 +27,42 @@ protocol::SideWall wall_at(const Scene& s, SideName side) {
   return wall;
 }
 
-std::vector<const MeshScene*> meshes_of(const Scene& s) {
-  std::vector<const MeshScene*> meshes;
+std::vector<const ObstacleScene*> meshes_of(const Scene& s) {
+  std::vector<const ObstacleScene*> meshes;
   for (const ObstacleScene& o : s.obstacles)
-    if (o.mesh) meshes.push_back(&*o.mesh);
+    if (o.mesh) meshes.push_back(&o);
   return meshes;
 }
 
-void add_walls(const Scene& s, protocol::Hello& h) {
+/// The discs that a script can have as walls, in its words.
+std::vector<std::string> discs_of(const Scene& s) {
+  std::vector<std::string> discs;
+  for (const ObstacleScene& o : s.obstacles)
+    if (std::string wall = disc_wall_words(o); s.box.dimension == 2 && !wall.empty())
+      discs.push_back(std::move(wall));
+  return discs;
+}
+
+/// The box around a mesh as it lies at a time.
+std::string mesh_text(const ObstacleScene& o, double time) {
+  TriangleMesh mesh = *o.mesh->surface;
+  if (o.motion) {
+    const Pose pose = pose_at(*o.motion, time);
+    for (Vec3& v : mesh.vertices) v = pose.moved(v);
+  }
+  const auto [low, high] = bounds(mesh);
+  return protocol::mesh_text({low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()});
+}
+
+void add_walls(const Scene& s, double time, protocol::Hello& h) {
   h.sides.emplace();
   for (int side = 0; side < 2 * s.box.dimension; ++side)
     (*h.sides)[side] = wall_at(s, static_cast<SideName>(side));
   const auto meshes = meshes_of(s);
-  for (const MeshScene* mesh : meshes) {
-    const auto [low, high] = bounds(*mesh->surface);
-    h.bodies.push_back("obstacle: " + protocol::mesh_text({low.x(), low.y(), low.z()},
-                                                          {high.x(), high.y(), high.z()}));
-  }
-  const std::size_t n = s.obstacles.size() - meshes.size();
+  for (const ObstacleScene* o : meshes) h.bodies.push_back("obstacle: " + mesh_text(*o, time));
+  std::size_t n = s.obstacles.size() - meshes.size();
+  for (std::size_t i = 0; i < discs_of(s).size(); ++i, --n)
+    h.bodies.push_back(fmt::format("disc{} (cylinder)", i + 1));
   if (n > 0) h.bodies.push_back(n == 1 ? "the scene's obstacle" : fmt::format("{} obstacles", n));
 }
 
@@ -51,12 +70,26 @@ std::string mesh_file(const std::string& folder, std::size_t number) {
   return fmt::format("{}/mesh{}.stl", folder, number);
 }
 
+/// The walls that the script can build as the fluid has them, and how they move.
+void add_shapes(const Scene& s, const std::string& folder, protocol::Hello& h) {
+  const auto meshes = meshes_of(s);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    h.variables.push_back({fmt::format("mesh{}", i + 1), mesh_file(folder, i + 1)});
+    const auto& motion = meshes[i]->motion;
+    if (motion)
+      h.variables.push_back({fmt::format("mesh{}_motion", i + 1), mesh_motion_words(*motion)});
+  }
+  const std::vector<std::string> discs = discs_of(s);
+  for (std::size_t i = 0; i < discs.size(); ++i)
+    h.variables.push_back({fmt::format("disc{}_wall", i + 1), discs[i]});
+}
+
 }  // namespace
 
 void write_meshes(const Scene& s, const std::string& folder) {
   const auto meshes = meshes_of(s);
   for (std::size_t i = 0; i < meshes.size(); ++i)
-    write_stl(mesh_file(folder, i + 1), *meshes[i]->surface);
+    write_stl(mesh_file(folder, i + 1), *meshes[i]->mesh->surface);
 }
 
 protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start,
@@ -92,7 +125,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
     if (cells->begin[k] + cells->size[k] < plan.domain.cells()[k])
       h.subdomain_hi[k] = s.box.origin[k] + plan.units.dx * (cells->begin[k] + cells->size[k]);
   }
-  add_walls(s, h);
+  add_walls(s, static_cast<double>(start.interval) * plan.interval(), h);
   h.reach = std::max(2.0, s.coupling->lubrication_range) * plan.units.dx;
 
   const auto number = [&h](const std::string& name, double value) {
@@ -133,8 +166,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
     number(fmt::format("particle{}_y", i + 1), p.start[i].y());
     if (!flat) number(fmt::format("particle{}_z", i + 1), p.start[i].z());
   }
-  for (std::size_t i = 0; i < meshes_of(s).size(); ++i)
-    h.variables.push_back({fmt::format("mesh{}", i + 1), mesh_file(start.out, i + 1)});
+  add_shapes(s, start.out, h);
   if (p.contact_stiffness) number("contact_stiffness", *p.contact_stiffness);
   for (const auto& [name, value] : p.variables) h.variables.push_back({name, value});
   return h;

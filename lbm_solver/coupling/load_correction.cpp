@@ -37,7 +37,7 @@ double LoadCorrection::in_ball(double radius) const {
          (flat_ ? depth_ : 4.0 / 3.0 * radius);
 }
 
-InnerFluid LoadCorrection::ball(double radius, double covered_radius) const {
+DisplacedFluid LoadCorrection::ball(double radius, double covered_radius) const {
   const double r = covered_radius;
   return {in_ball(r), in_ball(radius), (flat_ ? 0.5 : 0.4) * r * r, {}};
 }
@@ -70,7 +70,7 @@ double LoadCorrection::virtual_mass(const protocol::Particle& p, const Carrier& 
 
 void LoadCorrection::add_inner_fluid(const protocol::Particle& p, const Carrier& carrier,
                                      double interval, protocol::Load& load) const {
-  const InnerFluid& inside = carrier.inside;
+  const DisplacedFluid& inside = carrier.inside;
   const Velocities& change = virtual_mass(p, carrier) > 0.0 ? carrier.mean_change : carrier.change;
   const double mass = inside.covered, inertia = mass * inside.gyration2;
   for (int k = 0; k < (flat_ ? 2 : 3); ++k) load.force[k] += mass * change.v[k] / interval;
@@ -79,7 +79,7 @@ void LoadCorrection::add_inner_fluid(const protocol::Particle& p, const Carrier&
 }
 
 /// Of a clump all that is not m_c dU/dt.
-void LoadCorrection::add_uneven(const Vec3& omega, const InnerFluid& inside,
+void LoadCorrection::add_uneven(const Vec3& omega, const DisplacedFluid& inside,
                                 const Velocities& change, double interval,
                                 protocol::Load& load) const {
   const Vec3 spin = flat_ ? Vec3(0.0, 0.0, omega.z()) : omega;

@@ -81,7 +81,7 @@ class LoadCorrection {
 
   double fluid_mass(double volume) const { return fluid_.density * volume; }
   /// The fluid in the place of a single disc or sphere, and in the cells that it covers.
-  InnerFluid ball(double radius, double covered_radius) const;
+  DisplacedFluid ball(double radius, double covered_radius) const;
 
   /// Changes of velocity since the past of a carrier that has one.
   void note_change(const Velocities& now, Carrier& carrier) const;
@@ -101,7 +101,7 @@ class LoadCorrection {
   double virtual_mass(const protocol::Particle& p, const Carrier& carrier) const;
   void add_inner_fluid(const protocol::Particle& p, const Carrier& carrier, double interval,
                        protocol::Load& load) const;
-  void add_uneven(const Vec3& omega, const InnerFluid& inside, const Velocities& change,
+  void add_uneven(const Vec3& omega, const DisplacedFluid& inside, const Velocities& change,
                   double interval, protocol::Load& load) const;
 
   FluidScene fluid_;

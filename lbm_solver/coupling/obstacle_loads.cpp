@@ -15,7 +15,11 @@ ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decompo
   int lines = 0;
   for (const ObstacleScene& o : scene.obstacles) {
     has_grains_ = has_grains_ || o.grain;
-    (o.round ? line_ : o.block() ? block_line_ : shape_line_).push_back(o.grain ? 0 : ++lines);
+    (o.body() ? line_ : o.block() ? block_line_ : shape_line_).push_back(o.grain ? 0 : ++lines);
+    if (o.motion && ranks.rank() == 0) movers_.push_back({lines, InnerFluid(plan, o)});
+    if (!o.body()) continue;
+    motions_.push_back(o.motion);
+    centres_.push_back(units_.to_lattice_position(o.centre));
   }
   sums_.resize(lines + 1);
 }
@@ -25,7 +29,12 @@ void ObstacleLoads::add(Fluid& fluid, std::span<const BodyLoad> bodies) {
     sums_[line].force += load.force;
     sums_[line].torque += load.torque;
   };
-  for (std::size_t i = 0; i < bodies.size(); ++i) add_to(line_[i], bodies[i]);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    add_to(line_[i], bodies[i]);
+    if (!motions_[i]) continue;
+    const Vec3 arm = arm_of(i, fluid.steps() - 1);
+    sums_[line_[i]].torque += arm.cross(bodies[i].force);
+  }
   if (!boxes_.empty()) {
     if (!blocks_) blocks_.emplace(fluid, boxes_);
     const std::vector<BodyLoad> loads = blocks_->loads();
@@ -33,7 +42,14 @@ void ObstacleLoads::add(Fluid& fluid, std::span<const BodyLoad> bodies) {
   }
   const std::vector<BodyLoad> shapes = fluid.fixed_loads();
   for (std::size_t i = 0; i < shapes.size(); ++i) add_to(shape_line_[i], shapes[i]);
+  for (const Mover& mover : movers_) add_to(mover.line, mover.inner.in_step(fluid.steps() - 1));
   ++steps_;
+}
+
+/// From the pivot of a body that moves to its centre.
+Vec3 ObstacleLoads::arm_of(std::size_t body, std::int64_t step) const {
+  const Pose pose = pose_in_cells(units_, *motions_[body], step);
+  return pose.moved(centres_[body]) - pose.centre();
 }
 
 /// The sums of all ranks.

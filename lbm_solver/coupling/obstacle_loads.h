@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lbm_solver/base/record.h"
+#include "lbm_solver/coupling/inner_fluid.h"
 #include "lbm_solver/immersed/body.h"
 #include "lbm_solver/io/probe_writer.h"
 #include "lbm_solver/solver/plan.h"
@@ -15,7 +16,8 @@ namespace lbm {
 
 /// Writes the mean loads on the scene's obstacles since the line before to `obstacles.csv`, in SI
 /// units: a line for each obstacle by its number in the scene, from 1, and one numbered 0 for the
-/// sum over the grains of a file. The torque on a block is about its centre.
+/// sum over the grains of a file. The torque on a block is about its centre, that on what moves
+/// about the pivot of its motion, which is its middle where the scene names none.
 class ObstacleLoads {
  public:
   /// @param keep_until  a run that goes on keeps the lines before this time
@@ -34,6 +36,7 @@ class ObstacleLoads {
 
  private:
   std::vector<BodyLoad> whole() const;
+  Vec3 arm_of(std::size_t body, std::int64_t step) const;
 
   const Units units_;
   const Decomposition ranks_;
@@ -41,6 +44,13 @@ class ObstacleLoads {
   std::vector<int> line_;           // [round obstacle]: into sums_
   std::vector<int> block_line_;     // [block]: into sums_
   std::vector<int> shape_line_;     // [mesh or image]: into sums_
+  struct Mover {
+    int line;  // into sums_
+    InnerFluid inner;
+  };
+  std::vector<Mover> movers_;                        // where they count: of the first rank
+  std::vector<std::optional<MotionScene>> motions_;  // [round obstacle]
+  std::vector<Vec3> centres_;                        // [round obstacle] at rest, in cells
   const std::vector<CellBox> boxes_;
   std::optional<BlockLoads> blocks_;  // from the first step on
   std::vector<BodyLoad> sums_;        // since the last line, of this rank; 0: grains

@@ -209,7 +209,13 @@ std::string describe_cost(const Scene& s, const Plan& p) {
        imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel) + ", loads"
            : name_of(p.scheme) + ", loads",
        "solids");
-  part(!s.obstacles.empty(), fmt::format("{} obstacles at rest", s.obstacles.size()), "obstacles");
+  const auto moving = std::ranges::count_if(
+      s.obstacles, [](const ObstacleScene& o) { return o.motion.has_value(); });
+  part(!s.obstacles.empty(),
+       fmt::format("{} obstacles at rest{}",
+                   static_cast<std::ptrdiff_t>(s.obstacles.size()) - moving,
+                   moving > 0 ? fmt::format(", {} that move", moving) : ""),
+       "obstacles");
   part(s.coupling.has_value(), "solid program", "solid program");
   part(s.box.dimension == 3, "three dimensions", "3D");
   part(p.kernel.precision == Precision::Single, "single precision", "single precision");

@@ -214,6 +214,7 @@ class CoupledRun {
   /// Where the solids are when a step of the interval begins.
   void place(int step) {
     bodies_.resize(obstacles_);
+    if (moving_) bodies_ = obstacle_bodies(scene_, plan_, fluid_.steps());
     const auto moving = particles_.bodies(step * plan_.units.dt);
     bodies_.insert(bodies_.end(), moving.begin(), moving.end());
     fluid_.place(bodies_);
@@ -301,6 +302,7 @@ class CoupledRun {
   Fluid fluid_;
   std::vector<Body> bodies_;  // obstacles first, then the particles
   const std::size_t obstacles_;
+  const bool moving_ = has_moving_bodies(scene_);  // any of the obstacles
   Particles particles_;
   const Lubrication lubrication_;
   std::vector<double> masses_;
@@ -368,7 +370,10 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
       observers.add_loads(fluid, scene.obstacles.empty() ? std::vector<BodyLoad>() : fluid.loads());
       clock.charge("loads");
     };
+  const bool moving = has_moving_bodies(scene);
   for (std::int64_t step = first;; step = fluid.steps()) {
+    if (moving) fluid.place(obstacle_bodies(scene, plan, step));
+    fluid.move_shapes();
     const bool signalled = ranks.max(protocol::signalled() ? 1.0 : 0.0) > 0.0;
     if (signalled)
       ending = "stopped by a signal";
@@ -382,7 +387,10 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     if (last) break;
     std::int64_t next = std::min(observers.next_look(step), end);
     if (times.any()) next = std::min(next, times.next_checkpoint(step));
-    fluid.advance(next - step, add_loads);
+    for (; moving && fluid.steps() < next - 1;
+         fluid.place(obstacle_bodies(scene, plan, fluid.steps())))
+      fluid.advance(1, add_loads);
+    fluid.advance(next - fluid.steps(), add_loads);
     clock.charge("sweep");
     observers.after_interval(next - 1, fluid, nullptr);
     clock.charge("output");

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <map>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "lbm_solver/base/contracts.h"
 #include "lbm_solver/immersed/clump_cover.h"
 #include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/immersed/moving_shape.h"
 
 namespace lbm {
 namespace {
@@ -17,7 +20,35 @@ constexpr std::ptrdiff_t kManyBodies = 64;  // from which on it pays to divide t
 // The list of footprints grows: copies would leave the index with blocks that are gone.
 static_assert(std::is_nothrow_move_constructible_v<Footprint>);
 
+/// Blocks of cells side by side of a row, and in which of the row's they are.
+/// @param x    cell of the first cover
+/// @param arm  of that cell
+template <class Take>
+void each_block(int x, const Vec3& arm, std::span<const double> cover, Take&& take) {
+  const int end = x + static_cast<int>(cover.size());
+  for (int b = x / kPackWidth; b * kPackWidth < end; ++b) {
+    CoverBlock block{};
+    const int first = b * kPackWidth;
+    for (int at = std::max(x, first); at < std::min(end, first + kPackWidth); ++at)
+      block.cover[at - first] = cover[at - x];
+    if (std::ranges::all_of(block.cover, [](double c) { return c == 0.0; })) continue;
+    block.arm[0] = static_cast<float>(arm.x() + (first - x));
+    block.arm[1] = static_cast<float>(arm.y());
+    block.arm[2] = static_cast<float>(arm.z());
+    take(block, b);
+  }
+}
+
 }  // namespace
+
+struct CoverMap::Mover {
+  std::unique_ptr<MovingShape> shape;
+  std::size_t blocks;               // its own in fixed_
+  std::vector<std::size_t> places;  // in the index, of each block
+  /// The core of a hollow one reaches to the sides of the box: that it rubs there is no load.
+  std::vector<CoverBlock> far;
+  std::vector<std::size_t> far_places;
+};
 
 CoverMap::CoverMap(const Domain& domain, const Block& cells, const RadiusShift& shift)
     : domain_(domain),
@@ -27,6 +58,7 @@ CoverMap::CoverMap(const Domain& domain, const Block& cells, const RadiusShift& 
       blocks_per_row_((cells.size[0] + kPackWidth - 1) / kPackWidth),
       index_(static_cast<std::size_t>(blocks_per_row_) * cells.size[1] * cells.size[2] + kRowsEnd),
       motions_(1) {}
+CoverMap::~CoverMap() = default;
 
 namespace {
 
@@ -84,11 +116,12 @@ class Clumps {
 void CoverMap::update(std::span<const Body> bodies) {
   for (std::size_t d = bodies.size(); d < footprints_.size(); ++d) unlink(footprints_[d]);
   footprints_.resize(bodies.size());
-  motions_.resize(bodies.size() + 1);
+  const std::size_t first = 1 + movers_.size();
+  motions_.resize(first + bodies.size());
   const Clumps clumps(bodies, shift_);
   carriers_.clear();
   if (!clumps.none()) {
-    carriers_.push_back(0);
+    carriers_.assign(first, 0);
     for (const Body& b : bodies) carriers_.push_back(b.carrier);
   }
   const auto n = static_cast<std::ptrdiff_t>(bodies.size());
@@ -96,7 +129,7 @@ void CoverMap::update(std::span<const Body> bodies) {
   bool other_spans = false;
 #pragma omp parallel for schedule(static) reduction(|| : other_spans) if (n >= kManyBodies)
   for (std::ptrdiff_t d = 0; d < n; ++d) {
-    motions_[d + 1] = {bodies[d].velocity, bodies[d].spin};
+    motions_[first + d] = {bodies[d].velocity, bodies[d].spin};
     Body mapped = bodies[d];
     mapped.radius = shift_.radius(mapped.radius, mapped.hollow);
     change[d] = footprints_[d].look(mapped, domain_, cells_);
@@ -117,7 +150,7 @@ void CoverMap::update(std::span<const Body> bodies) {
   for (std::ptrdiff_t d = 0; d < n; ++d)
     if (other(d)) clumps.write(footprints_[d], static_cast<std::size_t>(d), domain_);
   for (std::ptrdiff_t d = 0; d < n; ++d)
-    if (other(d)) link(footprints_[d], static_cast<std::int32_t>(d + 1));
+    if (other(d)) link(footprints_[d], static_cast<std::int32_t>(first + d));
 }
 
 void CoverMap::add_wall(const Cell3& from, const Cell3& to) {
@@ -128,27 +161,65 @@ void CoverMap::add(const Geometry& geometry) {
   fixed_.push_back(fill_blocks(geometry));
 }
 
+void CoverMap::add(std::unique_ptr<MovingShape> shape) {
+  BPLBM_EXPECT(footprints_.empty());
+  fixed_.emplace_back();
+  movers_.push_back({std::move(shape), fixed_.size() - 1, {}, {}, {}});
+  motions_.resize(1 + movers_.size());
+}
+
+void CoverMap::move(std::span<const Pose> poses) {
+  BPLBM_EXPECT(poses.size() == movers_.size());
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    Mover& mover = movers_[k];
+    motions_[1 + k] = {poses[k].velocity, poses[k].spin};
+    if (!mover.shape->look(poses[k])) continue;
+    std::vector<CoverBlock>& blocks = fixed_[mover.blocks];
+    for (std::size_t i = 0; i < blocks.size(); ++i) unlink(mover.places[i], blocks[i]);
+    for (std::size_t i = 0; i < mover.far.size(); ++i) unlink(mover.far_places[i], mover.far[i]);
+    for (auto* list : {&blocks, &mover.far}) list->clear();
+    for (auto* list : {&mover.places, &mover.far_places}) list->clear();
+    const auto motion = static_cast<std::int32_t>(1 + k);
+    std::vector<double> cover;
+    mover.shape->map(domain_, cells_, [&](const CoverSpan& span) {
+      const auto put = [&](bool far, std::vector<CoverBlock>& to, std::vector<std::size_t>& at) {
+        cover.assign(span.cover.begin(), span.cover.end());
+        if (mover.shape->hollow())
+          for (double& c : cover)
+            if ((c == kCore) != far) c = 0.0;
+        each_block(span.x, span.arm, cover, [&](const CoverBlock& block, int b) {
+          to.push_back(block);
+          to.back().motion = motion;
+          at.push_back(place(span.y, span.z, b));
+        });
+      };
+      put(false, blocks, mover.places);
+      if (mover.shape->hollow()) put(true, mover.far, mover.far_places);
+    });
+    for (std::size_t i = 0; i < blocks.size(); ++i) insert(index_[mover.places[i]], blocks[i]);
+    for (std::size_t i = 0; i < mover.far.size(); ++i)
+      insert(index_[mover.far_places[i]], mover.far[i]);
+  }
+}
+
 /// The blocks that a solid at rest covers, linked.
 std::vector<CoverBlock> CoverMap::fill_blocks(const Geometry& geometry) {
   const Vec3 centre = (geometry.centre() / kSnap).array().round().matrix() * kSnap;
   const auto& begin = cells_.begin;
   std::vector<CoverBlock> blocks;
   std::vector<std::size_t> places;
+  std::vector<double> cover;
   fill(geometry, domain_, cells_, shift_, [&](const FractionSpan& span) {
     const auto& [x, y, z, fractions] = span;
-    const int end = x + static_cast<int>(fractions.size());
-    for (int b = x / kPackWidth; b * kPackWidth < end; ++b) {
-      CoverBlock block{};
-      const int first = b * kPackWidth;
-      for (int at = std::max(x, first); at < std::min(end, first + kPackWidth); ++at)
-        block.cover[at - first] = fractions[at - x] >= kWhole ? kWall : fractions[at - x];
-      if (std::ranges::all_of(block.cover, [](double cover) { return cover == 0.0; })) continue;
-      block.arm[0] = static_cast<float>(first + begin[0] + 0.5 - centre.x());
-      block.arm[1] = static_cast<float>(y + begin[1] + 0.5 - centre.y());
-      block.arm[2] = d_ == 3 ? static_cast<float>(z + begin[2] + 0.5 - centre.z()) : 0.0F;
+    cover.assign(fractions.begin(), fractions.end());
+    for (double& c : cover)
+      if (c >= kWhole) c = kWall;
+    const Vec3 arm(x + begin[0] + 0.5 - centre.x(), y + begin[1] + 0.5 - centre.y(),
+                   d_ == 3 ? z + begin[2] + 0.5 - centre.z() : 0.0);
+    each_block(x, arm, cover, [&](const CoverBlock& block, int b) {
       blocks.push_back(block);
-      places.push_back(place(y, z, b));
-    }
+      places.push_back(place(span.y, span.z, b));
+    });
   });
   for (std::size_t k = 0; k < blocks.size(); ++k) insert(index_[places[k]], blocks[k]);
   return blocks;
@@ -174,12 +245,14 @@ void CoverMap::link(Footprint& footprint, std::int32_t motion) {
 
 void CoverMap::unlink(Footprint& footprint) {
   for (const auto& span : footprint.spans())
-    for (int k = 0; k < span.blocks; ++k) {
-      CoverBlock& block = footprint.blocks()[span.first + k];
-      CoverBlock** here = &index_[place(span.y, span.z, span.block + k)];
-      while (*here != &block) here = &(*here)->next;
-      *here = block.next;
-    }
+    for (int k = 0; k < span.blocks; ++k)
+      unlink(place(span.y, span.z, span.block + k), footprint.blocks()[span.first + k]);
+}
+
+void CoverMap::unlink(std::size_t place, CoverBlock& block) {
+  CoverBlock** here = &index_[place];
+  while (*here != &block) here = &(*here)->next;
+  *here = block.next;
 }
 
 /// What a solid's fractions count in a block that it shares: 1, or so much less that those of its
@@ -199,7 +272,8 @@ template <int D>
 CoverMap::Shared<D> CoverMap::merge(const CoverBlock& first) const {
   Shared<D> all;
   for (Pack& u : all.u) u = Pack(0.0);
-  Pack sum(0.0);
+  Pack sum(0.0), of_wall[D];  // velocity of a wall: 0, but where it moves in its surface
+  for (Pack& u : of_wall) u = Pack(0.0);
   Pack::mask_type core(false), wall(false);
   for (const CoverBlock* block = &first; block; block = block->next) {
     const Pack cover = load<Pack>(block->cover.data());
@@ -210,16 +284,19 @@ CoverMap::Shared<D> CoverMap::merge(const CoverBlock& first) const {
     sum += eps;
     Pack u[D];
     velocity_in<D>(*block, motion(*block), u);
-    for (int a = 0; a < D; ++a) all.u[a] += eps * u[a];
+    for (int a = 0; a < D; ++a) {
+      all.u[a] += eps * u[a];
+      where(cover == Pack(kWall), of_wall[a]) = u[a];
+    }
   }
   all.scale = Pack(0.0);
   where(sum > Pack(0.0), all.scale) = Pack(1.0) / sum;
   all.cover = fraction_of(sum);
   where(core, all.cover) = Pack(kCore);
   where(wall, all.cover) = Pack(kWall);
-  for (Pack& u : all.u) {
-    u *= all.scale;
-    where(wall, u) = Pack(0.0);
+  for (int a = 0; a < D; ++a) {
+    all.u[a] *= all.scale;
+    where(wall, all.u[a]) = of_wall[a];
   }
   return all;
 }

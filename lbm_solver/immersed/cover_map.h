@@ -2,15 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "lbm_solver/base/pose.h"
 #include "lbm_solver/immersed/footprint.h"
 #include "lbm_solver/immersed/radius_shift.h"
 
 namespace lbm {
 
 struct Geometry;
+class MovingShape;
 
 /// Covered cells of a rank: where a sweep finds the blocks of the solids. A block of the lattice
 /// that holds none is pure fluid and is swept without asking further.
@@ -20,6 +23,7 @@ class CoverMap {
   explicit CoverMap(const Domain& domain) : CoverMap(domain, Block::whole(domain)) {}
   CoverMap(const CoverMap&) = delete;  // blocks point at each other
   CoverMap& operator=(const CoverMap&) = delete;
+  ~CoverMap();
 
   /// Places the bodies where they are now. One that has not moved costs nothing.
   void update(std::span<const Body> bodies);
@@ -29,6 +33,11 @@ class CoverMap {
   /// A solid of any shape that stays where it is: cells that it covers whole are a wall, those at
   /// its surface collide as those of a body do. @throws std::invalid_argument  see fill()
   void add(const Geometry& geometry);
+  /// A mesh that moves: cells that it covers whole are those of a body that moves. To be called
+  /// before bodies are placed. @throws std::invalid_argument  see fill()
+  void add(std::unique_ptr<MovingShape> shape);
+  /// Where the meshes that move are in the coming step, in the order in which they were added.
+  void move(std::span<const Pose> poses);
 
   int blocks_per_row() const { return blocks_per_row_; }
   /// For each SIMD block of row (y, z): what the first solid covers of it, with the others after
@@ -81,11 +90,13 @@ class CoverMap {
   }
   void link(Footprint& footprint, std::int32_t motion);
   void unlink(Footprint& footprint);
+  void unlink(std::size_t place, CoverBlock& block);
   static void insert(CoverBlock*& at, CoverBlock& block);
   Pack part_of_union(const CoverBlock& first, const CoverBlock& block) const;
   template <int D>
   static BodyLoad load_of(std::span<const CoverBlock> blocks);
   std::vector<CoverBlock> fill_blocks(const Geometry& geometry);
+  struct Mover;
 
   Domain domain_;
   Block cells_;
@@ -93,10 +104,11 @@ class CoverMap {
   int d_;
   int blocks_per_row_;
   std::vector<CoverBlock*> index_;                      // [layer][row][block], then kRowsEnd nulls
-  std::vector<Motion> motions_;                         // at rest; of each body
+  std::vector<Motion> motions_;                         // at rest; of each mover; of each body
   std::vector<std::int32_t> carriers_;                  // [motion]; empty where there is no clump
   std::vector<Footprint> footprints_;                   // [body]
   std::vector<std::vector<CoverBlock>> walls_, fixed_;  // [wall]; [solid that was added]
+  std::vector<Mover> movers_;                           // those among fixed_ that move
 };
 
 }  // namespace lbm

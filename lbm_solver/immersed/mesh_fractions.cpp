@@ -160,8 +160,14 @@ std::vector<std::vector<std::uint32_t>> by_layer(const TriangleMesh& mesh, int b
 
 void fill_mesh(const TriangleMesh& mesh, bool hollow, const Block& cells, const RadiusShift& shift,
                const std::function<void(const FractionSpan&)>& take) {
+  fill_mesh(mesh, mean_curvatures(mesh), hollow, cells, shift, take);
+}
+
+void fill_mesh(const TriangleMesh& mesh, const std::vector<double>& curvatures, bool hollow,
+               const Block& cells, const RadiusShift& shift,
+               const std::function<void(const FractionSpan&)>& take) {
   const Vec3 origin(cells.begin[0], cells.begin[1], cells.begin[2]);
-  std::vector<double> bend = mean_curvatures(mesh);
+  std::vector<double> bend = curvatures;
   for (double& b : bend) b *= (hollow ? -1.0 : 1.0) * shift.curvature;
   Layer layer(cells.size, shift.plane);
   std::vector<double> row(cells.size[0]);

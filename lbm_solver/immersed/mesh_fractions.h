@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "lbm_solver/immersed/geometry.h"
 
@@ -20,6 +21,10 @@ namespace lbm {
 ///               passes through: RadiusShift for a surface of any shape
 /// @throws std::invalid_argument  somewhere the surface encloses less than nothing
 void fill_mesh(const TriangleMesh& mesh, bool hollow, const Block& cells, const RadiusShift& shift,
+               const std::function<void(const FractionSpan&)>& take);
+/// Likewise. @param bend  mean_curvatures of the mesh, which stay what they are where it moves
+void fill_mesh(const TriangleMesh& mesh, const std::vector<double>& bend, bool hollow,
+               const Block& cells, const RadiusShift& shift,
                const std::function<void(const FractionSpan&)>& take);
 
 }  // namespace lbm

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "lbm_solver/io/image_file.h"
+#include "lbm_solver/io/motion_reader.h"
 #include "lbm_solver/io/stl_file.h"
 #include "protocol/program/checksum.h"
 #include "protocol/program/input_file.h"
@@ -199,6 +200,50 @@ ImageScene read_image(TableReader& t, const std::string& scene_file, const BoxSc
   return scene;
 }
 
+/// A block that moves: the mesh of a box, in two dimensions a short piece of it around the middle
+/// of the layer. (A solid program that repeats the layer would find ends at its borders in one
+/// place, and LIGGGHTS wants triangles that are not too long.)
+MeshScene box_mesh(Vec3 low, Vec3 high, const BoxScene& box) {
+  if (box.dimension == 2) {
+    high.z() = std::min(0.4 * box.depth, 0.5 * (high - low).maxCoeff());
+    low.z() = -high.z();
+  }
+  TriangleMesh mesh = box_surface(low, high);
+  MeshScene scene;
+  scene.file = "of a block";
+  scene.volume = enclosed_volume(mesh);
+  scene.surface = std::make_shared<const TriangleMesh>(std::move(mesh));
+  return scene;
+}
+
+/// Its middle, about which it turns where nothing else is said.
+Vec3 middle_of(const ObstacleScene& o) {
+  if (o.round) return o.centre;
+  const auto [low, high] = bounds(*o.mesh->surface);
+  return 0.5 * (low + high);
+}
+
+void read_its_motion(TableReader& t, const std::string& scene_file, const BoxScene& box,
+                     ObstacleScene& o) {
+  std::optional<ReadMotion> read = read_motion(t, scene_file, box.dimension);
+  if (!read) return;
+  if (o.image)
+    t.fail("motion", "is there for discs, spheres, blocks and meshes, not for images",
+           "draw it as a mesh, or leave motion out");
+  if (!o.spin.isZero(0.0))
+    t.fail("spin", "stands beside motion", "give motion = \"rotation\" and angular_velocity");
+  if (o.block()) {
+    for (int k = 0; k < box.dimension; ++k)
+      if (!(o.from[k] < o.to[k]))
+        t.fail("to", fmt::format("is not above from in {}", "xyz"[k]),
+               "give its lower and upper corner");
+    o.mesh = box_mesh(o.from, o.to, box);
+  }
+  o.motion = std::move(read->motion);
+  if (!read->has_pivot) o.motion->about = middle_of(o);
+  if (box.dimension == 2) o.motion->about.z() = 0.0;
+}
+
 }  // namespace
 
 ObstacleScene read_obstacle(TableReader t, const std::string& scene_file, const BoxScene& box) {
@@ -224,6 +269,7 @@ ObstacleScene read_obstacle(TableReader t, const std::string& scene_file, const 
         t.vector("from", d, "[m], or centre and diameter of a disc or sphere, or a mesh or image");
     o.to = t.vector("to", d, "[m]");
   }
+  read_its_motion(t, scene_file, box, o);
   t.finish();
   return o;
 }

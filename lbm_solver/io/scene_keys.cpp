@@ -59,11 +59,22 @@ run.end_time = 1
 obstacle = [{mesh = "none.stl"}]
 )",
     R"(
+box.size = [1, 1, 1]
+fluid = {density = 1, kinematic_viscosity = 1, velocity_scale = 1}
+numerics.cell = 0.1
+run.end_time = 1
+obstacle = [{centre = [0, 0, 0], diameter = 1, motion = "rotation", angular_velocity = 1, axis = [0, 0, 1]},
+            {centre = [0, 0, 0], diameter = 1, motion = "table", motion_table = "none.csv"}]
+)",
+    R"(
 box.size = [1, 1]
 fluid = {density = 1, kinematic_viscosity = 1, velocity_scale = 1}
 numerics.cell = 0.1
 run.end_time = 1
-obstacle = [{image = "none.raw", voxel = 1, threshold = 1, at = [0, 0], cut_from = [0, 0], cut_to = [1, 1], raw_size = [1, 1]}]
+obstacle = [{centre = [0, 0], diameter = 1, motion = "linear", velocity = [1, 0]},
+            {centre = [0, 0], diameter = 1, motion = "rotation", angular_velocity = 1, about = [0, 0]},
+            {centre = [0, 0], diameter = 1, motion = "oscillation", amplitude = [1, 0], angular_amplitude = 1, frequency = 1},
+            {image = "none.raw", voxel = 1, threshold = 1, at = [0, 0], cut_from = [0, 0], cut_to = [1, 1], raw_size = [1, 1]}]
 )"};
 
 /// What the reader does not know of a key.
@@ -190,12 +201,11 @@ constexpr Meaning kMeanings[] = {
     {"boundary.repeat", "periodic: the table begins anew after its last line."},
     {"boundary.pressure", "Pressure of a pressure or outflow, against the reference."},
     {"boundary.ramp", "Time in which the value comes up as ½(1 - cos)."},
-    {"obstacle.centre", "Centre of a disc or sphere at rest.",
-     "required without from, mesh and image"},
+    {"obstacle.centre", "Centre of a disc or sphere.", "required without from, mesh and image"},
     {"obstacle.diameter", "Its diameter.", "required with centre"},
     {"obstacle.hollow", "Whether the solid is everything outside of the circle, sphere or mesh."},
     {"obstacle.spin", "Angular velocity of a disc (a number) or sphere (a vector)."},
-    {"obstacle.from", "Lower corner of a block of whole cells at rest.",
+    {"obstacle.from", "Lower corner of a block: of whole cells where it is at rest.",
      "required without centre, mesh and image"},
     {"obstacle.to", "Upper corner of the block.", "required with from"},
     {"obstacle.mesh", "Triangle mesh, an .stl file beside the scene (shapes.md).",
@@ -204,6 +214,22 @@ constexpr Meaning kMeanings[] = {
     {"obstacle.rotate", "Axis x, y, z through the file's origin, and degrees.", "none"},
     {"obstacle.move", "Where the mesh goes after that."},
     {"obstacle.thickness", "Makes a layer of the mesh's surface, which may then be open.", "none"},
+    {"obstacle.motion", "How a disc, sphere, block or mesh moves (shapes.md).", "at rest"},
+    {"obstacle.velocity", "Of a linear motion.", "required with motion = \"linear\""},
+    {"obstacle.angular_velocity", "Of a rotation.", "required with motion = \"rotation\""},
+    {"obstacle.axis", "Direction of the axis of a rotation, in three dimensions.",
+     "required where it turns"},
+    {"obstacle.about", "Place through which the axis goes, and about which the torque is.",
+     "middle of the obstacle"},
+    {"obstacle.amplitude", "Of an oscillation: amplitude × sin(2π frequency t)."},
+    {"obstacle.angular_amplitude", "Of an oscillation about the axis."},
+    {"obstacle.frequency", "Of an oscillation.", "required with motion = \"oscillation\""},
+    {"obstacle.motion_table",
+     "Table `time,x,y[,z][,angle]` of a motion against the obstacle's place, beside the scene.",
+     "required with motion = \"table\""},
+    {"obstacle.surface_only",
+     "Whether the obstacle stays in its cells and its surface has the velocity, as that of a "
+     "drum."},
     {"obstacle.image", "Image beside the scene: .raw, .npy, .h5, .png or .tif (shapes.md).",
      "required without centre, from and mesh"},
     {"obstacle.voxel", "Size of a voxel.", "required with image"},

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lbm_solver/solver/motion_check.h"
+
 namespace lbm {
 namespace {
 
@@ -71,6 +73,10 @@ std::vector<Drive> drives(const Scene& s) {
   for (const ObstacleScene& o : s.obstacles)
     add(0.5 * o.diameter * o.spin.norm(),
         fmt::format("an obstacle's spin = {:.3g} rad/s", o.spin.norm()));
+  for (const ObstacleScene& o : s.obstacles)
+    if (o.motion)
+      if (const double speed = largest_speed(*o.motion, reach_of(o), s.end_time); speed > 0.0)
+        add(speed, fmt::format("an obstacle's motion at {:.3g} m/s", speed));
   const double force = s.fluid.body_force.norm() * s.fluid.body_force_table.largest(),
                pressure = largest_pressure(s);
   add(channel_speed(s, force), fmt::format("fluid.body_force = {:.3g} m/s²", force));

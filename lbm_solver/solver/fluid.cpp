@@ -6,9 +6,15 @@
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/base/simd.h"
 #include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/immersed/moving_shape.h"
 #include "lbm_solver/immersed/resistance.h"
 
 namespace lbm {
+namespace {
+
+constexpr double kWallLag = 0.5;  // of cells that reflect all that arrives: the mean of two steps
+
+}  // namespace
 
 Fluid::Fluid(const Domain& domain, const KernelChoice& choice)
     : Fluid(Decomposition(domain), choice) {}
@@ -91,11 +97,36 @@ void Fluid::add(const Geometry& geometry) {
   Body& body = fixed_.emplace_back();
   body.id = static_cast<std::int64_t>(fixed_.size());
   body.centre = geometry.centre();
+  fixed_lags_.push_back(load_lag(choice_.solid_term, choice_.parameters.tau));
+}
+
+void Fluid::add(const MeshSolid& solid, PoseInTime pose, bool stays) {
+  BPLBM_EXPECT(cover_ != nullptr);
+  cover_->add(std::make_unique<MovingShape>(
+      solid, radius_shift(choice_.solid_term, domain().dimension()), stays));
+  Body& body = fixed_.emplace_back();
+  body.id = static_cast<std::int64_t>(fixed_.size());
+  movers_.push_back({fixed_.size() - 1, std::move(pose)});
+  fixed_lags_.push_back(stays ? kWallLag : load_lag(choice_.solid_term, choice_.parameters.tau));
+  moved_to_ = -1;
+}
+
+void Fluid::move_shapes() {
+  if (movers_.empty() || moved_to_ == steps_) return;
+  remember_loads();
+  std::vector<Pose> poses;
+  for (const Mover& mover : movers_) {
+    poses.push_back(mover.pose(steps_));
+    fixed_[mover.fixed].centre = poses.back().centre();
+  }
+  cover_->move(poses);
+  moved_to_ = steps_;
 }
 
 void Fluid::place(std::span<const Body> bodies) {
   BPLBM_EXPECT(has_solids());
   remember_loads();
+  move_shapes();
   bodies_.assign(bodies.begin(), bodies.end());
   if (!scheme_) cover_->update(bodies);
 }
@@ -117,7 +148,7 @@ std::vector<BodyLoad> Fluid::loads() const {
 std::vector<BodyLoad> Fluid::fixed_loads() const {
   if (fixed_.empty()) return {};
   if (!two_steps_.on()) return cover_->fixed_loads();
-  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells());
+  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells(), fixed_lags_);
 }
 
 /// One step's sweep where neighbours are other ranks; called by every thread of a parallel region.
@@ -160,6 +191,10 @@ void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
       after_each();
     }
     return;
+  }
+  if (!movers_.empty()) {
+    for (; steps > 1; --steps) advance(1);
+    move_shapes();
   }
   if (!two_steps_.on()) return make_steps(steps, {});
   remember_loads();

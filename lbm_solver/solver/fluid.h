@@ -19,6 +19,8 @@
 
 namespace lbm {
 
+struct MeshSolid;
+
 /// The fluid: a lattice, what happens at its sides, and the solids in it. Everything in lattice
 /// units. Where several ranks share the box, each holds its block of cells: cells are counted from
 /// the block's first, places of bodies and points from the box's. Functions that say so are
@@ -59,6 +61,12 @@ class Fluid {
   /// A solid of any shape that stays where it is. Needs a solid term in the kernel's choice.
   /// @throws std::invalid_argument  see fill()
   void add(const Geometry& geometry);
+  /// A mesh that moves as it is told; before bodies are placed.
+  /// @param stays  in its surface only: its poses have no shift and no angle
+  /// @throws std::invalid_argument  see fill()
+  void add(const MeshSolid& solid, PoseInTime pose, bool stays = false);
+  /// Puts the meshes that move where they are at the present step; the next step does so too.
+  void move_shapes();
 
   /// Solids act by a scheme of its own instead of covered cells (which walls keep). One rank only.
   void use(std::unique_ptr<BodyScheme> scheme) {
@@ -95,7 +103,7 @@ class Fluid {
   std::vector<BodyLoad> momentary_loads() const {
     return scheme_ ? scheme_->loads() : cover_->loads();
   }
-  /// Likewise on the solids that were added, about their centres, in their order.
+  /// Likewise on the solids that were added, about their centres or pivots, in their order.
   std::vector<BodyLoad> fixed_loads() const;
   /// Part of a cell that solids cover, at most 1.
   double solid_fraction(int x, int y, int z = 0) const;
@@ -179,6 +187,13 @@ class Fluid {
   std::unique_ptr<BodyScheme> scheme_;
   std::vector<Body> bodies_;  // as placed
   std::vector<Body> fixed_;   // that were added: their names and centres
+  struct Mover {
+    std::size_t fixed;  // which of those
+    PoseInTime pose;
+  };
+  std::vector<Mover> movers_;
+  std::vector<double> fixed_lags_;  // load_lag of each of fixed_
+  std::int64_t moved_to_ = -1;      // step whose poses the map has
   TwoStepLoads two_steps_, fixed_two_steps_;
   bool loads_are_new_ = false;  // those in the map are of a step that two_steps_ does not know
   std::vector<std::unique_ptr<Patch>> patches_;

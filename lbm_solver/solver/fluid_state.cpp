@@ -90,6 +90,7 @@ void Fluid::load(const Record& record) {
     populations = record.list<double>("populations", q_count * all[0] * all[1] * all[2]);
   populations = ranks_->scatter(std::move(populations), lattice().Q);
   steps_ = record.integer("steps");
+  move_shapes();
   stream_.set_odd(record.integer("odd") != 0);
   if (force_in_time_.changes_after(0) || flow_) set_body_force();
   each_cell(n, [&](std::size_t number, int x, int y, int z) {

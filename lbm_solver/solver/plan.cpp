@@ -150,15 +150,16 @@ void choose_solids(const Scene& s, Plan& plan) {
   k.solid_term = "none";
   const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
                                   [](const ObstacleScene& o) { return o.block(); });
-  const bool shapes = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                  [](const ObstacleScene& o) { return o.mesh || o.image; });
-  const bool spinning = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                    [](const ObstacleScene& o) { return !o.spin.isZero(0.0); });
+  const bool shapes =
+      std::any_of(s.obstacles.begin(), s.obstacles.end(),
+                  [](const ObstacleScene& o) { return o.mesh || o.image || o.drum(); });
+  const bool moving = std::ranges::any_of(
+      s.obstacles, [](const ObstacleScene& o) { return o.motion || !o.spin.isZero(0.0); });
   if (!s.coupling && s.obstacles.empty()) return;
   if (n.scheme != "auto" && n.scheme != name_of(plan.scheme)) {
     if (shapes)
-      throw InputError(fmt::format("{}: numerics.scheme = \"{}\" knows discs, spheres and blocks, "
-                                   "no meshes and images",
+      throw InputError(fmt::format("{}: numerics.scheme = \"{}\" knows discs, spheres and blocks "
+                                   "at rest, no meshes and images",
                                    s.file, n.scheme),
                        "take scheme = \"immersed_moving_boundary\"");
     if (n.solid_term != "auto")
@@ -191,7 +192,7 @@ void choose_solids(const Scene& s, Plan& plan) {
   };
   if (k.collision != CollisionOperator::Trt)
     take("layered_noble_torczynski", "least noise where the fluid is under-resolved");
-  else if (s.coupling || spinning)
+  else if (s.coupling || moving)
     take("layered_resistance", "exact on planes at every τ, and calm in bodies that move");
   else
     take("resistance", "exact on planes at every τ");

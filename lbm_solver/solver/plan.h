@@ -61,8 +61,14 @@ inline Fluid make_fluid(const Scene& scene, const Plan& plan) {
   return make_fluid(scene, plan, Decomposition(plan.domain));
 }
 
-/// The scene's obstacles that are discs or spheres, in lattice units, ids -1, -2, …
-std::vector<Body> obstacle_bodies(const Scene& scene, const Plan& plan);
+/// A motion's pose when a fluid step begins, in lattice units.
+Pose pose_in_cells(const Units& units, const MotionScene& motion, std::int64_t step);
+
+/// The scene's obstacles that are discs or spheres, in lattice units, ids -1, -2, … as they are
+/// when a fluid step begins.
+std::vector<Body> obstacle_bodies(const Scene& scene, const Plan& plan, std::int64_t step = 0);
+/// Whether any of them moves as it is told.
+bool has_moving_bodies(const Scene& scene);
 
 /// The scene's obstacles that are meshes or images, in its order. @throws InputError  an image is
 /// off the cells, or reaches out of the box

@@ -11,6 +11,7 @@
 #include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/driven_speed.h"
+#include "lbm_solver/solver/motion_check.h"
 #include "lbm_solver/solver/place_check.h"
 
 namespace lbm {
@@ -37,8 +38,10 @@ std::pair<double, std::string> given_speed(const Scene& s) {
   };
   for (const BoundaryScene& b : s.boundaries)
     look(b.velocity.norm() * b.table.largest() * b.profile.largest(), "boundary.velocity");
-  for (const ObstacleScene& o : s.obstacles)
+  for (const ObstacleScene& o : s.obstacles) {
     look(0.5 * o.diameter * o.spin.norm(), "an obstacle's spin");
+    if (o.motion) look(largest_speed(*o.motion, reach_of(o), s.end_time), "an obstacle's motion");
+  }
   look(mean_speed(s), "fluid.flow_rate");
   return largest;
 }
@@ -130,6 +133,8 @@ void check_frequency(const Scene& s, double frequency, const std::string& what, 
 void check_frequencies(const Scene& s, Plan& plan) {
   for (const BoundaryScene& b : s.boundaries)
     check_frequency(s, b.frequency, "boundary.frequency", plan);
+  for (const ObstacleScene& o : s.obstacles)
+    if (o.motion) check_frequency(s, o.motion->frequency, "obstacle.frequency", plan);
   check_frequency(s, s.fluid.body_force_frequency, "fluid.body_force_frequency", plan);
   const bool varies = s.fluid.body_force_frequency > 0.0 || !s.fluid.body_force_table.times.empty();
   if (varies && s.coupling && s.coupling->carry_weight)
@@ -290,6 +295,7 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_drives(s, plan);
   check_sizes(s, plan);
   check_frequencies(s, plan);
+  check_motions(s, plan);
   check_idle_keys(s, plan);
   check_overlaps(s, plan);
   check_starts_in_shapes(s, plan);

@@ -2,6 +2,7 @@
 /// From a scene and its plan to a fluid: boundaries, obstacles, initial state.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -114,10 +115,24 @@ CellBox cells_of(const Scene& s, const Plan& p, const ObstacleScene& o) {
   return box;
 }
 
+/// In two dimensions it reaches beyond the one layer of cells, however thick that is.
 MeshSolid solid_of(const Plan& p, const MeshScene& mesh) {
   TriangleMesh surface = *mesh.surface;
-  for (Vec3& v : surface.vertices) v = p.units.to_lattice_position(v);
+  for (Vec3& v : surface.vertices) {
+    const bool upper = v.z() > 0.0;
+    v = p.units.to_lattice_position(v);
+    if (p.domain.dimension() == 2) v.z() = upper ? 2.0 : -1.0;
+  }
   return {std::make_shared<const TriangleMesh>(std::move(surface)), mesh.hollow};
+}
+
+MeshSolid drum_of(const Plan& p, const ObstacleScene& o) {
+  const int d = p.domain.dimension();
+  TriangleMesh surface =
+      round_surface(p.units.to_lattice_position(o.centre), 0.5 * o.diameter / p.units.dx, d);
+  if (d == 2)
+    for (Vec3& v : surface.vertices) v.z() = v.z() > 0.0 ? 2.0 : -1.0;
+  return {std::make_shared<const TriangleMesh>(std::move(surface)), true};
 }
 
 /// A voxel is a whole number of cells wide, or a cell of voxels.
@@ -176,8 +191,14 @@ Start start(const InitialScene& i, const Units& units, double x, double y) {
   return {0.0, {0.0, 0.0}};
 }
 
-void add_shape(const Scene& s, const Geometry& shape, Fluid& fluid) try {
-  fluid.add(shape);
+/// @param motion  null: it stays where it is
+void add_shape(const Scene& s, const Plan& p, const Geometry& shape, const MotionScene* motion,
+               Fluid& fluid) try {
+  if (!motion) return fluid.add(shape);
+  const auto pose = [units = p.units, motion = *motion](std::int64_t step) {
+    return pose_in_cells(units, motion, step);
+  };
+  fluid.add(std::get<MeshSolid>(shape.shape), pose, motion->surface_only);
 } catch (const std::invalid_argument& error) {
   throw InputError(s.file + ": obstacle.mesh", error.what(),
                    "turn it outwards, or leave the inner shell out");
@@ -185,14 +206,34 @@ void add_shape(const Scene& s, const Geometry& shape, Fluid& fluid) try {
 
 }  // namespace
 
-std::vector<Body> obstacle_bodies(const Scene& s, const Plan& p) {
+Pose pose_in_cells(const Units& units, const MotionScene& motion, std::int64_t step) {
+  Pose pose = pose_at(motion, static_cast<double>(step) * units.dt);
+  pose.pivot = units.to_lattice_position(pose.pivot);
+  pose.shift = pose.shift / units.dx;
+  pose.velocity = units.to_lattice_velocity(pose.velocity);
+  pose.spin = units.to_lattice_spin(pose.spin);
+  return pose;
+}
+
+std::vector<Body> obstacle_bodies(const Scene& s, const Plan& p, std::int64_t step) {
   std::vector<Body> bodies;
-  for (const ObstacleScene& o : s.obstacles)
-    if (o.round)
-      bodies.push_back({-static_cast<std::int64_t>(bodies.size() + 1),
-                        p.units.to_lattice_position(o.centre), 0.5 * o.diameter / p.units.dx,
-                        Vec3(), p.units.to_lattice_spin(o.spin), o.hollow});
+  for (const ObstacleScene& o : s.obstacles) {
+    if (!o.body()) continue;
+    Body& body = bodies.emplace_back(
+        Body{-static_cast<std::int64_t>(bodies.size() + 1), p.units.to_lattice_position(o.centre),
+             0.5 * o.diameter / p.units.dx, Vec3(), p.units.to_lattice_spin(o.spin), o.hollow});
+    if (!o.motion) continue;
+    const Pose pose = pose_in_cells(p.units, *o.motion, step);
+    body.centre = pose.moved(body.centre);
+    body.velocity = pose.velocity_at(body.centre);
+    body.spin = pose.spin;
+  }
   return bodies;
+}
+
+bool has_moving_bodies(const Scene& s) {
+  return std::ranges::any_of(s.obstacles,
+                             [](const ObstacleScene& o) { return o.body() && o.motion; });
 }
 
 std::vector<CellBox> obstacle_blocks(const Scene& s, const Plan& p) {
@@ -207,6 +248,7 @@ std::vector<Geometry> obstacle_shapes(const Scene& s, const Plan& p) {
   for (const ObstacleScene& o : s.obstacles) {
     if (o.mesh) shapes.push_back({solid_of(p, *o.mesh)});
     if (o.image) shapes.push_back({solid_of(s, p, *o.image)});
+    if (o.drum()) shapes.push_back({drum_of(p, o)});
   }
   return shapes;
 }
@@ -218,7 +260,10 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
     if (s.box.pressure_jump[axis] != 0.0)
       add_pressure_jump(p, axis, s.box.pressure_jump[axis], fluid);
   for (const CellBox& block : obstacle_blocks(s, p)) fluid.add_wall(block.from, block.to);
-  for (const Geometry& shape : obstacle_shapes(s, p)) add_shape(s, shape, fluid);
+  const std::vector<Geometry> shapes = obstacle_shapes(s, p);
+  std::size_t next = 0;
+  for (const ObstacleScene& o : s.obstacles)
+    if (o.mesh || o.image) add_shape(s, p, shapes[next++], o.motion ? &*o.motion : nullptr, fluid);
   if (p.scheme != SolidScheme::ImmersedMovingBoundary)
     fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(), s.numerics.spring_stiffness));
   const InTime force =
@@ -226,14 +271,19 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
   if (force.changes_after(0)) fluid.vary_body_force(force);
   if (s.fluid.flow) fluid.hold_flow(flow_control(s, p));
   if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
-  if (s.initial.kind == InitialScene::Kind::Rest && !p.kernel.force) return fluid;
+  const bool moving =
+      p.kernel.solid_term != "none" &&
+      std::ranges::any_of(s.obstacles, [](const auto& o) { return o.motion.has_value(); });
+  if (s.initial.kind == InitialScene::Kind::Rest && !p.kernel.force && !moving) return fluid;
   const Block& cells = ranks.cells();
   for (int z = 0; z < cells.size[2]; ++z)
     for (int y = 0; y < cells.size[1]; ++y)
       for (int x = 0; x < cells.size[0]; ++x) {
         const Start at = start(s.initial, p.units, (x + cells.begin[0] + 0.5) / p.domain.nx,
                                (y + cells.begin[1] + 0.5) / p.domain.ny);
-        fluid.set_equilibrium({x, y, z}, 1.0 + at.drho, at.u);
+        const bool inside = moving && fluid.solid_fraction(x, y, z) > 0.5;
+        fluid.set_equilibrium({x, y, z}, 1.0 + at.drho,
+                              inside ? fluid.cover()->cell(x, y, z).velocity : at.u);
       }
   return fluid;
 }

@@ -4,6 +4,11 @@
 #include "protocol/wire/text.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <optional>
 
 namespace protocol {
 namespace {
@@ -18,22 +23,47 @@ std::string name_of(const Hello& fluid, int side) {
 
 constexpr const char* kMesh = "mesh from (";
 
-/// The mesh that the name of a body ends with; empty where it is none.
-std::string mesh_in(const std::string& body) {
+using Extent = std::array<double, 6>;  // lower and upper corner [m]
+
+/// Of the mesh that the name of a body ends with, if it is one.
+std::optional<Extent> mesh_in(const std::string& body) {
   const auto at = body.find(kMesh);
-  return at == std::string::npos ? std::string() : body.substr(at);
+  if (at == std::string::npos) return std::nullopt;
+  Extent x{};
+  const int read =
+      std::sscanf(body.c_str() + at + std::strlen(kMesh), "%lf, %lf, %lf) to (%lf, %lf, %lf", &x[0],
+                  &x[1], &x[2], &x[3], &x[4], &x[5]);
+  return read == 6 ? std::optional(x) : std::nullopt;
 }
 
-/// The bodies of one side that the other has not as the same mesh.
+/// One that moves is where it is but for a step's way, and for round-off.
+constexpr double kNear = 1e-4;  // of the box
+
+bool same(const Extent& a, const Extent& b, const Hello& box) {
+  double size = 0.0;
+  for (int k = 0; k < 3; ++k) size = std::max(size, box.box_hi[k] - box.box_lo[k]);
+  for (std::size_t k = 0; k < a.size(); ++k)
+    if (!(std::abs(a[k] - b[k]) <= kNear * size)) return false;
+  return true;
+}
+
+/// A cylinder does not tell where it is: one that both have is taken for the same.
+bool is_cylinder(const std::string& body) {
+  return body.find("(cylinder)") != std::string::npos;
+}
+
+/// The bodies of one side that the other has not as the same mesh, or as a cylinder.
 std::vector<std::string> unshared(const std::vector<std::string>& mine,
-                                  const std::vector<std::string>& others) {
+                                  const std::vector<std::string>& others, const Hello& box) {
   std::vector<std::string> rest;
   for (const std::string& body : mine) {
-    const std::string mesh = mesh_in(body);
-    const bool shared =
-        !mesh.empty() && std::any_of(others.begin(), others.end(),
-                                     [&](const auto& o) { return mesh_in(o) == mesh; });
-    if (!shared) rest.push_back(body);
+    const auto mesh = mesh_in(body);
+    const bool shared = mesh && std::any_of(others.begin(), others.end(), [&](const auto& o) {
+                          const auto other = mesh_in(o);
+                          return other && same(*mesh, *other, box);
+                        });
+    const bool round = is_cylinder(body) && std::any_of(others.begin(), others.end(), is_cylinder);
+    if (!shared && !round) rest.push_back(body);
   }
   return rest;
 }
@@ -61,8 +91,8 @@ std::vector<std::string> one_sided_walls(const Hello& fluid, const Hello& solid)
           format("side {} is a wall for the particles and open for the fluid, as a sieve",
                  name_of(fluid, static_cast<int>(side))));
   }
-  const auto of_fluid = unshared(fluid.bodies, solid.bodies);
-  for (const std::string& body : unshared(solid.bodies, fluid.bodies))
+  const auto of_fluid = unshared(fluid.bodies, solid.bodies, fluid);
+  for (const std::string& body : unshared(solid.bodies, fluid.bodies, fluid))
     found.push_back(
         format("{} is a wall for the particles only: the fluid does not see it and flows "
                "through; if it shall not, add an obstacle to the scene",

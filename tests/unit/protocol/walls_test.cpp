@@ -65,6 +65,27 @@ TEST(Walls, ThatAreOneMeshAreNotNamed) {
   expect_one(scene.found(), "obstacle: mesh from (0, 0, 0.1) to (0.3, 0.2, 0.15) m: there for the");
 }
 
+// One that moves is off by a step's way: a ten thousandth of the box is one place.
+TEST(Walls, ThatAreOneMeshMayBeAStepApart) {
+  Scene scene;
+  const double size = scene.fluid.box_hi[1] - scene.fluid.box_lo[1];
+  const auto mesh = [](double x) { return mesh_text({x, 0.0, 0.1}, {x + 0.3, 0.2, 0.15}); };
+  scene.fluid.bodies = {"obstacle: " + mesh(0.0)};
+  scene.solid.bodies = {"fix gate mesh/surface, " + mesh(0.5e-4 * size)};
+  EXPECT_TRUE(scene.found().empty());
+  scene.solid.bodies = {"fix gate mesh/surface, " + mesh(0.05 * size)};
+  expect_one(scene.found(), "fix gate mesh/surface is a wall for the particles only");
+}
+
+TEST(Walls, ThatAreOneCylinderAreNotNamed) {
+  Scene scene;
+  scene.fluid.bodies = {"disc1 (cylinder)"};
+  scene.solid.bodies = {"fix drum wall/gran (cylinder)"};
+  EXPECT_TRUE(scene.found().empty());
+  scene.fluid.bodies = {"the scene's obstacle"};
+  expect_one(scene.found(), "fix drum wall/gran (cylinder) is a wall for the particles only");
+}
+
 TEST(Walls, OfASideThatDoesNotSayAreNotGuessed) {
   Scene scene;
   scene.solid.sides.reset();

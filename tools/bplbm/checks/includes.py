@@ -31,7 +31,7 @@ ONLY = {
     "atom.h": r"liggghts_coupling/(host|bond)/.*",
     "fix.h": r"liggghts_coupling/(host|bond)/.*",
     "toml++": r"lbm_solver/io/.*",
-    "Eigen": r"lbm_solver/(base/vec3|immersed/(body|marked_bodies))\.h",
+    "Eigen": r"lbm_solver/(base/(vec3|pose|mass_moments)|immersed/(body|marked_bodies))\.(h|cpp)",
 }
 
 

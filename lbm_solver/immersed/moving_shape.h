@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "lbm_solver/base/pose.h"
+#include "lbm_solver/immersed/geometry.h"
+
+namespace lbm {
+
+/// Cells of a row that a moving solid covers, side by side.
+struct CoverSpan {
+  int x, y, z;                    ///< of the first one, among the rank's cells
+  Vec3 arm;                       ///< from the pivot of the covering image to that cell's centre
+  std::span<const double> cover;  ///< solid fraction, or kCore, or kWall
+};
+
+/// A mesh that moves as a rigid body, and which cells it covers where it is. As bodies it is mapped
+/// on a grid of places and angles, kSnap apart at its farthest corner: one that creeps keeps its
+/// map for many steps, and a map depends on the pose alone.
+class MovingShape {
+ public:
+  /// @param shift  of curved surfaces
+  /// @param stays  it moves in its surface only: what it covers whole is a wall with its velocity,
+  ///               which reflects all that arrives
+  MovingShape(MeshSolid at_rest, const RadiusShift& shift, bool stays = false);
+
+  bool hollow() const { return at_rest_.hollow; }
+  /// @return whether the map of this pose is another one than that of the last
+  bool look(const Pose& pose);
+  /// The cells of the pose that was looked at; images across periodic sides too. Core is what has
+  /// nothing but whole cells within two cells around it.
+  /// @throws std::invalid_argument  see fill()
+  void map(const Domain& domain, const Block& cells,
+           const std::function<void(const CoverSpan&)>& take) const;
+
+ private:
+  void map_image(const Vec3& offset, const Domain& domain, const Block& cells,
+                 const std::function<void(const CoverSpan&)>& take) const;
+
+  MeshSolid at_rest_;
+  RadiusShift shift_;
+  bool stays_;
+  std::vector<double> bend_;  // of each vertex
+  Pose pose_;
+  bool looked_ = false;
+  TriangleMesh mesh_;   // in the pose
+  double reach_ = 1.0;  // of the farthest corner from the axis
+};
+
+}  // namespace lbm

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/io/motion_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "protocol/program/checksum.h"
+#include "protocol/program/input_file.h"
+
+namespace lbm {
+namespace {
+
+using Kind = MotionScene::Kind;
+
+constexpr std::uintmax_t kLargestTable = 100'000'000;  // bytes
+
+/// The numbers of a line, or nothing where it is none of so many finite ones.
+std::vector<double> numbers_of(const std::string& line, std::size_t count) {
+  std::vector<double> numbers;
+  std::istringstream text(line);
+  for (std::string part; std::getline(text, part, ',');) {
+    std::size_t end = 0;
+    double value = 0.0;
+    try {
+      value = std::stod(part, &end);
+    } catch (const std::exception&) {
+      return {};
+    }
+    while (end < part.size() && (part[end] == ' ' || part[end] == '\r')) ++end;
+    if (end != part.size() || !std::isfinite(value)) return {};
+    numbers.push_back(value);
+  }
+  return numbers.size() == count ? numbers : std::vector<double>();
+}
+
+/// Lines `time,x,y[,z][,angle]` [s, m, rad].
+void read_table(TableReader& t, const std::string& scene_file, int dimension, MotionScene& m) {
+  const std::string name = t.text_or("motion_table", "");
+  const auto fail = [&](const std::string& problem, const std::string& remedy) {
+    t.fail("motion_table", "= \"" + name + "\": " + problem, remedy);
+  };
+  const std::string plain = dimension == 2 ? "time,x,y" : "time,x,y,z", turning = plain + ",angle";
+  const std::string remedy = "the first line is " + plain + " or " + turning + " (in s, m and rad)";
+  if (name.empty()) t.fail("motion_table", "is missing", "name a table of " + turning);
+  const auto path = std::filesystem::path(scene_file).parent_path() / name;
+  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
+    fail(problem, "put a table " + turning + " beside the scene");
+  t.note("motion_table_content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  if (line != plain && line != turning) fail("begins with '" + line.substr(0, 60) + "'", remedy);
+  const bool turns = line == turning;
+  const auto d = static_cast<std::size_t>(dimension);
+  for (int number = 2; std::getline(file, line); ++number) {
+    const std::vector<double> v = numbers_of(line, 1 + d + (turns ? 1 : 0));
+    if (v.empty())
+      fail(fmt::format("line {}: '{}' is not {} finite numbers", number, line.substr(0, 60),
+                       1 + d + (turns ? 1 : 0)),
+           remedy);
+    if (!m.times.empty() && v[0] <= m.times.back())
+      fail(fmt::format("line {}: time {:.6g} s does not come after {:.6g} s", number, v[0],
+                       m.times.back()),
+           "sort the lines by time, each time once");
+    m.times.push_back(v[0]);
+    m.shifts.emplace_back(v[1], v[2], dimension == 3 ? v[3] : 0.0);
+    m.angles.push_back(turns ? v.back() : 0.0);
+  }
+  if (m.times.size() < 2) fail("holds fewer than two lines", "give at least two times");
+}
+
+void read_oscillation(TableReader& t, int dimension, MotionScene& m) {
+  m.amplitude = t.vector_or_zero("amplitude", dimension, "[m]");
+  m.angular_amplitude = t.number_or("angular_amplitude", 0.0, {}, "rad");
+  m.frequency = t.number("frequency", Bounds::positive(), "Hz");
+  if (m.amplitude.isZero(0.0) && m.angular_amplitude == 0.0)
+    t.fail("amplitude", "is missing or 0", "give amplitude [m] or angular_amplitude [rad]");
+}
+
+/// Where it turns, and about what.
+void read_axis(TableReader& t, int dimension, ReadMotion& read) {
+  MotionScene& m = read.motion;
+  const bool turns = m.angular_velocity != 0.0 || m.angular_amplitude != 0.0 ||
+                     (m.kind == Kind::Table && dimension == 3 && t.has("axis"));
+  read.has_pivot = t.has("about");
+  if (read.has_pivot) m.about = t.vector("about", dimension, "[m], through which the axis goes");
+  for (const double angle : m.angles)
+    if (angle != 0.0 && dimension == 3 && !t.has("axis"))
+      t.fail("axis", "is missing, and the table turns the obstacle", "give its direction");
+  if (dimension == 2 || !turns) return;
+  m.axis = t.vector("axis", 3, "direction of the axis of rotation");
+  if (m.axis.norm() == 0.0) t.fail("axis", "is zero", "give its direction, e.g. [0, 0, 1]");
+  m.axis.normalize();
+}
+
+}  // namespace
+
+std::optional<ReadMotion> read_motion(TableReader& t, const std::string& scene_file, int d) {
+  if (!t.has("motion")) return std::nullopt;
+  ReadMotion read;
+  MotionScene& m = read.motion;
+  const std::string kind =
+      t.choice_or("motion", "", {"linear", "rotation", "oscillation", "table"});
+  m.kind = kind == "linear"     ? Kind::Linear
+           : kind == "rotation" ? Kind::Rotation
+           : kind == "table"    ? Kind::Table
+                                : Kind::Oscillation;
+  if (m.kind == Kind::Linear) {
+    m.velocity = t.vector("velocity", d, "[m/s]");
+    if (m.velocity.isZero(0.0)) t.fail("velocity", "is zero", "leave motion out: it is at rest");
+  }
+  if (m.kind == Kind::Rotation) {
+    m.angular_velocity = t.number("angular_velocity", {}, "rad/s");
+    if (m.angular_velocity == 0.0)
+      t.fail("angular_velocity", "is zero", "leave motion out: it is at rest");
+  }
+  if (m.kind == Kind::Oscillation) read_oscillation(t, d, m);
+  if (m.kind == Kind::Table) read_table(t, scene_file, d, m);
+  read_axis(t, d, read);
+  m.surface_only = t.flag_or("surface_only", false);
+  return read;
+}
+
+}  // namespace lbm

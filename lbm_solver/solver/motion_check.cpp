@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/solver/motion_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "lbm_solver/base/errors.h"
+
+namespace lbm {
+namespace {
+
+constexpr int kLooks = 500;             // times at which a way is looked at
+constexpr double kAcrossItself = 0.05;  // part of a surface's speed that may cross it
+
+/// Places that hold an obstacle between them, at rest.
+std::vector<Vec3> corners(const Scene& s, const ObstacleScene& o) {
+  if (!o.round) return o.mesh->surface->vertices;
+  const double r = 0.5 * o.diameter;
+  std::vector<Vec3> places;
+  for (int k = 0; k < s.box.dimension; ++k)
+    for (const double side : {-r, r}) {
+      Vec3 place = o.centre;
+      place[k] += side;
+      places.push_back(place);
+    }
+  return places;
+}
+
+/// The first time at which an obstacle lies outside of the box across a wall; negative: never.
+double leaves_at(const Scene& s, const ObstacleScene& o) {
+  const std::vector<Vec3> places = corners(s, o);
+  for (int look = 1; look <= kLooks; ++look) {
+    const double time = s.end_time * look / kLooks;
+    const Pose pose = pose_at(*o.motion, time);
+    Vec3 low = pose.moved(places[0]), high = low;
+    for (const Vec3& place : places) {
+      const Vec3 now = pose.moved(place);
+      low = low.cwiseMin(now);
+      high = high.cwiseMax(now);
+    }
+    for (int k = 0; k < s.box.dimension; ++k)
+      if (s.box.sides[k] == SideKind::Wall &&
+          (high[k] <= s.box.origin[k] || low[k] >= s.box.origin[k] + s.box.size[k]))
+        return time;
+  }
+  return -1.0;
+}
+
+/// Part of the surface's velocity that crosses it, where it has one.
+double across_itself(const ObstacleScene& o) {
+  const Pose pose = pose_at(*o.motion, 0.0);
+  if (o.round) return pose.velocity_at(o.centre).isZero(1e-12) ? 0.0 : 1.0;
+  const TriangleMesh& mesh = *o.mesh->surface;
+  double across = 0.0, all = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 middle = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
+    const Vec3 velocity = pose.velocity_at(middle), area = mesh.area_vector(t);
+    across += std::abs(velocity.dot(area));
+    all += velocity.norm() * area.norm();
+  }
+  return all > 0.0 ? across / all : 0.0;
+}
+
+/// Why LIGGGHTS' fix move/mesh cannot follow; empty where it can.
+std::string why_not_in_liggghts(const MotionScene& m) {
+  if (m.kind == MotionScene::Kind::Table) return "moves as a table says";
+  if (m.kind != MotionScene::Kind::Oscillation) return {};
+  if (m.surface_only) return "oscillates in its surface";
+  if (!m.amplitude.isZero(0.0) && m.angular_amplitude != 0.0)
+    return "oscillates to and fro and about an axis at once";
+  return {};
+}
+
+void check_motion(const Scene& s, const ObstacleScene& o, std::size_t number, Plan& plan) {
+  const MotionScene& m = *o.motion;
+  const auto warn = [&](const std::string& text) {
+    plan.warnings.push_back(fmt::format("the {}. obstacle {}", number, text));
+  };
+  if (const std::string why = why_not_in_liggghts(m); s.coupling && o.mesh && !why.empty())
+    throw InputError(
+        fmt::format("{}: the {}. obstacle {}, which the fix move/mesh of the solid program cannot "
+                    "follow: grains and fluid would meet two walls",
+                    s.file, number, why),
+        "take a motion that is linear, a rotation, or one oscillation");
+  if (!m.times.empty() && m.times.front() > 0.0)
+    warn(fmt::format("has a motion_table that begins at {:.4g} s: it stands until then",
+                     m.times.front()));
+  if (!m.times.empty() && m.times.back() < s.end_time * (1.0 - 1e-9))
+    warn(
+        fmt::format("has a motion_table that ends at {:.4g} s, the run at {:.4g} s: it stands "
+                    "from then on",
+                    m.times.back(), s.end_time));
+  if (m.surface_only) {
+    if (const double part = across_itself(o); part > kAcrossItself)
+      warn(
+          fmt::format("moves its surface only, which does not move along itself ({:.2g} of its "
+                      "velocity crosses it): fluid would pass through; leave surface_only out",
+                      part));
+  } else if (const double time = leaves_at(s, o); time > 0.0 && !o.hollow) {
+    warn(fmt::format("has left the box at {:.4g} s", time));
+  }
+}
+
+}  // namespace
+
+double reach_of(const ObstacleScene& o) {
+  if (!o.motion) return 0.0;
+  const auto distance = [&](const Vec3& place) {
+    return o.motion->axis.cross(Vec3(place - o.motion->about)).norm();
+  };
+  if (o.round) return distance(o.centre) + 0.5 * o.diameter;
+  double reach = 0.0;
+  for (const Vec3& v : o.mesh->surface->vertices) reach = std::max(reach, distance(v));
+  return reach;
+}
+
+void check_motions(const Scene& s, Plan& plan) {
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i)
+    if (s.obstacles[i].motion) check_motion(s, s.obstacles[i], i + 1, plan);
+}
+
+}  // namespace lbm

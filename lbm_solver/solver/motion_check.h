@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "lbm_solver/solver/plan.h"
+
+namespace lbm {
+
+/// How far an obstacle that moves reaches from the axis about which it turns [m].
+double reach_of(const ObstacleScene& obstacle);
+
+/// Refuses a motion that one of the programs cannot follow, and warns of what hardly is meant: a
+/// table that does not cover the run, a way out of the box, a surface that does not move along
+/// itself.
+/// @throws InputError
+void check_motions(const Scene& scene, Plan& plan);
+
+}  // namespace lbm
