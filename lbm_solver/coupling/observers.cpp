@@ -213,7 +213,8 @@ void Observers::guard(std::int64_t state, Fluid& fluid, const Particles* particl
       e.finite ? std::max(e.max_speed, particle) : std::numeric_limits<double>::infinity();
   if (state > 0) speeds_.add(state * plan_.fluid_steps, speed);
   const auto why = [&] {
-    const auto all = particles ? particles->gather().particles : std::vector<protocol::Particle>();
+    auto all = particles ? particles->gather().particles : std::vector<protocol::Particle>();
+    hide_hulls(all);
     const bool fluid_is_fastest = !(e.finite && particle > e.max_speed);
     return diagnosis(scene_, plan_, fluid_is_fastest ? std::optional(x) : std::nullopt, speeds_,
                      all);
@@ -268,6 +269,7 @@ void Observers::add_bonds(const std::vector<protocol::Particle>& particles,
 /// written lies in the box.
 Particles::Everything Observers::shown(const Particles& particles) const {
   Particles::Everything all = particles.gather();
+  hide_hulls(all.particles);
   for (protocol::Particle& p : all.particles)
     for (int k = 0; k < scene_.box.dimension; ++k)
       if (scene_.box.sides[k] == SideKind::Periodic)

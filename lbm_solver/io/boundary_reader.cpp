@@ -70,8 +70,13 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::strin
     b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
     b.table = read_time_table(t, "table", t.choice_or("repeat", "once", {"once", "periodic"}),
                               scene_file);
+    b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
+  } else {
+    for (const char* key : {"ramp", "frequency", "table", "repeat"})
+      if (t.has(key))
+        t.fail(key, "has no meaning for an outflow, whose pressure is steady",
+               "leave it out, or take kind = \"pressure\"");
   }
-  b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
   t.finish();
   return b;
 }

@@ -12,6 +12,7 @@
 #include "lbm_solver/io/hdf5_array.h"
 #include "lbm_solver/io/view_script.h"
 #include "protocol/transport/hdf5_file.h"
+#include "protocol/wire/clumps.h"
 
 namespace lbm {
 namespace {
@@ -193,6 +194,11 @@ void FieldWriter::write_particles(hid_t group, const FieldFrame& f) const {
               flat ? "id,x,y,radius,vx,vy,omega,type"
                    : "id,x,y,z,radius,vx,vy,vz,omega_x,omega_y,omega_z,type");
   if (count == 0) return;
+  std::vector<double> carriers;
+  for (const Particle& p : f.particles)
+    carriers.push_back(static_cast<double>(protocol::carrier_of(p.shape)));
+  if (std::ranges::any_of(f.particles, [](const Particle& p) { return is_part(p.shape); }))
+    write_array(group, "particle_carrier", carriers, {count}, "1");
   write_array(group, "particle_places", places, {count, static_cast<hsize_t>(dimension_)}, "m");
   for (const PointValue& value : kPointValues) {
     std::vector<double> column;

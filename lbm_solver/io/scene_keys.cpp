@@ -37,6 +37,7 @@ numerics.cell = 0.1
 run.end_time = 1
 boundary = [{side = "front", kind = "outflow", from = [0, 0], to = [1, 1]}]
 obstacle = [{centre = [0, 0, 0], diameter = 1}]
+sensor = [{name = "a", kind = "plane", axis = "z", at = 0}, {name = "b", kind = "side", side = "front"}]
 )",
     R"(
 box.size = [1, 1]
@@ -243,7 +244,7 @@ constexpr Meaning kMeanings[] = {
     {"sensor.from", "Corner of the part of a plane that counts, or one end of a line.",
      "whole plane"},
     {"sensor.to", "The opposite corner, or the other end.", "whole plane"},
-    {"sensor.count", "Places along a line."},
+    {"sensor.count", "Places along a line.", "20"},
     {"sensor.side", "Side of the box.", "required of a side"},
 };
 
