@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from bplbm import Run, draw_slice, quantity, read_table, result, studies
 
-REST, SHEARED, STOPPED = (0.1, 0.3), (0.5, 1.3), (1.5, 1.8)  # s: after the transients, see plates.csv
+REST, SHEARED, STOPPED = (0.15, 0.3), (0.5, 1.3), (1.5, 1.8)  # s: after the transients, see plates.csv
 SHEAR_RATE, YIELD_STRESS, PLASTIC = 15.0, 13.7, 0.15  # 1/s, Pa, Pa s
 OIL = "fluid-oil"
 CREEP_TOLERANCE, STOPPED_TOLERANCE, SHEARED_TOLERANCE = 0.05, 0.15, 0.20
