@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from bplbm import Run, draw_slice, quantity, read_table, result, studies
 
-REST, SHEARED, STOPPED = (0.1, 0.3), (0.5, 1.3), (1.5, 1.8)  # s: after the transients, see plates.csv
+REST, SHEARED, STOPPED = (0.15, 0.3), (0.5, 1.3), (1.5, 1.8)  # s: after the transients, see plates.csv
 SHEAR_RATE, YIELD_STRESS, PLASTIC = 15.0, 13.7, 0.15  # 1/s, Pa, Pa s
 OIL = "fluid-oil"
 CREEP_TOLERANCE, STOPPED_TOLERANCE, SHEARED_TOLERANCE = 0.05, 0.15, 0.20
@@ -20,10 +20,13 @@ class Fall:
 
     times: np.ndarray
     velocity: np.ndarray
+    frames: np.ndarray  # times at which the mixture's own velocity is known; it is straight between them
 
     def mean(self, span):
-        inside = (self.times > span[0]) & (self.times < span[1])
-        return self.velocity[inside].mean() if inside.any() else np.nan
+        """Over a span; of what creeps only at the frames, since the mixture's velocity changes by more between them."""
+        times = self.times if span == SHEARED else self.frames
+        inside = times[(times > span[0]) & (times < span[1] + 1e-3)]
+        return np.interp(inside, self.times, self.velocity).mean() if inside.any() else np.nan
 
 
 def fall(run):
@@ -31,7 +34,8 @@ def fall(run):
     times = np.unique(table["time"])
     cuttings = np.array([table["vz"][table["time"] == t].mean() for t in times])
     frames = [(frame.time, float(frame.velocity[..., 2].mean())) for frame in run.fields]  # covered cells have the cuttings'
-    return Fall(times, np.interp(times, *np.transpose(frames)) - cuttings)
+    known, mixture = np.transpose(frames)
+    return Fall(times, np.interp(times, known, mixture) - cuttings, known)
 
 
 def apparent():

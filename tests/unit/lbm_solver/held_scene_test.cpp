@@ -45,6 +45,7 @@ TEST_P(BadDrive, IsNamedWithReasonAndRemedy) {
   folder.write("twice.csv", "y,factor\n0,1\n0,2\n");
   folder.write("one.csv", "y,factor\n0,1\n");
   folder.write("gaps.csv", "y,z,factor\n0,0,1\n0.01,0,1\n0.01,0.01,1\n");
+  folder.write("two.csv", "y,factor\n0,1\n0.01,0\n");
   folder.write("across.csv", "x,factor\n0,1\n1,1\n");
   try {
     make_plan(read_scene({folder.write("scene.toml", GetParam().scene)}));
@@ -97,8 +98,8 @@ INSTANTIATE_TEST_SUITE_P(
                 slot(kWater, inlet("profile_table = \"across.csv\""), kWalls),
                 {"begins with 'x,factor'", "y,factor"}},
         Refused{"profile_and_parabola",
-                slot(kWater, inlet("profile = \"parabolic\"\nprofile_table = \"one.csv\""), kWalls),
-                {"profile_table"}}),
+                slot(kWater, inlet("profile = \"parabolic\"\nprofile_table = \"two.csv\""), kWalls),
+                {"profile_table", "stands beside", "parabolic"}}),
     [](const auto& info) { return info.param.name; });
 
 // A parabola from a table of 81 lines, against the one that a scene can name: chords are lower by

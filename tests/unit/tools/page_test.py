@@ -249,6 +249,21 @@ class Flow(Output):
             file["frame000003/bond_ends"][...] = [[0.0, 0.0], [0.03, 0.0]]
         self.assertEqual([len(plane.bonds) for plane in flow.read_planes(run)], [1, 1, 1, 0])
 
+    def test_a_viscosity_has_a_button_and_a_scale_of_its_logarithm(self):
+        for dimensions in (2, 3):
+            run = self.write(dimensions)
+            self.assertNotIn('data-kind="viscosity"', flow.animation(run, flow.read_planes(run)))
+            with h5py.File(self.out / "fields.h5", "r+") as file:
+                for group in file.values():
+                    nu = np.full(group["pressure"].shape, 1e-5, np.float32)
+                    nu[..., 0], nu[..., 1] = 1e-3, np.nan
+                    group["viscosity"] = nu
+            planes = flow.read_planes(run)
+            bar = flow.scales(planes)["viscosity"]
+            self.assertEqual((round(bar.low, 3), round(bar.high, 3)), (-5, -3))
+            self.assertIn('data-kind="viscosity"', flow.animation(run, planes))
+            self.assertEqual(run.fields[0].viscosity.unit, "m2/s")
+
     def test_breaks_count_from_the_fluids_beginning(self):
         run = self.write(2)
         self.assertAlmostEqual(histories.settling_time(run), 0.04)  # 700 steps, of which 500 coupled
