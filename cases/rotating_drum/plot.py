@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from bplbm import Run, draw_speed, quantity, read_table, result, studies
 
-CENTRE, RADIUS, SPIN = 0.0328, 0.030, 1.0  # m, m, rad/s
+CENTRE, RADIUS, SPIN = 0.0344, 0.030, 1.0  # m, m, rad/s
 STEADY = 0.4                               # part of the run after which the bed has come to its slope
 GRAVITY = 9.81
 

@@ -247,7 +247,8 @@ TEST_F(Motions, ThatTheSolidCannotFollowAreRefusedInACoupledScene) {
   extra_ = "[particles]\ndiameter = 0.002\ndensity = 2000.0\n[coupling]\n";
   folder_.write("way.csv", "time,x,y\n0,0,0\n2,0.002,0.002\n");
   const std::string table = "motion = \"table\"\nmotion_table = \"way.csv\"";
-  refused(2, kBlock + table, {"moves as a table says", "fix move/mesh"});
+  refused(2, kBlock + table,
+          {"moves as a table says", "cannot follow: grains and fluid would meet two walls"});
   refused(2,
           kBlock +
               "motion = \"oscillation\"\namplitude = [0.001, 0]\nangular_amplitude = 0.1\n"
