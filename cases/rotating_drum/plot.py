@@ -6,8 +6,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from bplbm import Run, draw_speed, quantity, read_table, result, studies
 
-CENTRE, RADIUS, SPIN = 0.0344, 0.030, 1.0  # m, m, rad/s
-STEADY = 0.4                               # part of the run after which the bed has come to its slope
+CENTRE, RADIUS, SPIN = 0.0384, 0.030, 1.0  # m, m, rad/s
+STEADY = 0.5                               # part of the run after which the bed has come to its slope
 GRAVITY = 9.81
 
 
@@ -53,7 +53,7 @@ def wall_speed(run):
         arm = (np.stack([x, y]) + 0.5) * run.parameters["cell"] - CENTRE
         r = np.hypot(*arm)
         tangential = (arm[0] * frame["velocity"][..., 1] - arm[1] * frame["velocity"][..., 0]) / r
-        near = (frame["solid_fraction"] == 0) & (r > RADIUS - 2 * run.parameters["cell"]) & (arm[1] > 0.6 * RADIUS)
+        near = (frame["solid_fraction"] == 0) & (np.abs(r - RADIUS + 2 * run.parameters["cell"]) < run.parameters["cell"]) & (arm[1] > 0.6 * RADIUS)
         ratios.append(np.mean(tangential[near] / (SPIN * r[near])))
     return np.mean(ratios)
 
