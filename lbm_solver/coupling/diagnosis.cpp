@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lbm_solver/solver/driven_speed.h"
+#include "protocol/wire/clumps.h"
 
 namespace lbm {
 namespace {
@@ -41,6 +42,7 @@ Near nearest(const Scene& s, const std::optional<Vec3>& at,
              const std::vector<protocol::Particle>& particles) {
   Near near;
   for (const auto& p : particles) {
+    if (p.shape.radius == 0.0) continue;  // a clump: its spheres are there
     if (!at) {
       if (!near.particle || speed_of(p) > speed_of(*near.particle)) near = {&p, 0.0};
       continue;
@@ -51,7 +53,8 @@ Near nearest(const Scene& s, const std::optional<Vec3>& at,
   }
   if (!near.particle) return near;
   for (const auto& q : particles) {
-    if (&q == near.particle) continue;
+    if (&q == near.particle || q.shape.radius == 0.0) continue;
+    if (is_part(q.shape) && q.shape.carrier == near.particle->shape.carrier) continue;
     const double sum = q.shape.radius + near.particle->shape.radius;
     const double deep = (sum - between(s, near.particle->state.x, q.state.x).norm()) /
                         std::min(q.shape.radius, near.particle->shape.radius);

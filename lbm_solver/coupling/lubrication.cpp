@@ -96,6 +96,7 @@ void Lubrication::add(std::span<const Body> bodies, std::span<const double> mass
          ++j) {
       const Body &a = bodies[all[i].body], &b = bodies[all[j].body];
       if (all[i].body == all[j].body || a.hollow || b.hollow) continue;
+      if (a.carrier != 0 && a.carrier == b.carrier) continue;  // of one clump
       const Vec3 apart = all[j].centre - all[i].centre;
       const double distance = apart.norm(), gap = distance - a.radius - b.radius;
       const double inverse = 1.0 / masses[all[i].body] + 1.0 / masses[all[j].body];

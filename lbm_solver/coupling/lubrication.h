@@ -15,7 +15,8 @@ namespace lbm {
 ///   R*²/h, R* = R₁R₂/(R₁+R₂)   (a wall: R* = R)
 /// [Jeffrey and Onishi 1981, 1984, leading order]. The lattice resolves ζ down to the gap h₀, so
 /// ζ(h) - ζ(h₀) is added below it. The force is held for an interval T, so it is the mean of one
-/// that decays with the motion, ζ U_n / (1 + ζ T/m*): a pair is never thrown back.
+/// that decays with the motion, ζ U_n / (1 + ζ T/m*): a pair is never thrown back. Between the
+/// spheres of one clump there is none.
 struct Lubrication {
   double viscosity = 0.0;  ///< kinematic, lattice units
   double range = 1.0;      ///< h₀ [cells]

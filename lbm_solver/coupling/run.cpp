@@ -178,6 +178,7 @@ class CoupledRun {
         stands_at_.reset();
       particles_.arrive(arrival.particles, plan_.interval());
       particles_.tell(arrival.report);
+      if (particles_.has_clumps()) expect_takes_clumps(plan_.scheme);
       if (scene_.coupling->carry_weight) carry_weight(interval);
       place(0);
       observers_.at_state(interval, fluid_, &particles_, last);

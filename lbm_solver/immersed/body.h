@@ -18,14 +18,16 @@ class Spin : public Vec3 {
   Spin(const Eigen::MatrixBase<Derived>& v) : Vec3(v) {}  // NOLINT: any expression
 };
 
-/// A rigid disc (in two dimensions) or sphere as the lattice sees it, in lattice units.
+/// A rigid disc (in two dimensions) or sphere as the lattice sees it, in lattice units. Several
+/// that move as one rigid body (a clump) have one carrier: they cover a cell once, and may overlap.
 struct Body {
   std::int64_t id = 0;
   Vec3 centre;
   double radius = 0.0;
   Vec3 velocity;
-  Spin spin;            ///< [rad / step]
-  bool hollow = false;  ///< the solid is everything outside of the circle or sphere
+  Spin spin;                 ///< [rad / step]
+  bool hollow = false;       ///< the solid is everything outside of the circle or sphere
+  std::int32_t carrier = 0;  ///< a number that those of one clump share; 0: a body of its own
 
   /// Velocity of its material at a place `arm` from its centre.
   Vec3 velocity_at(const Vec3& arm) const { return velocity + spin.cross(arm); }

@@ -2,10 +2,13 @@
 #include "lbm_solver/immersed/cover_map.h"
 
 #include <algorithm>
+#include <map>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "lbm_solver/base/contracts.h"
+#include "lbm_solver/immersed/clump_cover.h"
 #include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/moving_shape.h"
 
@@ -57,11 +60,70 @@ CoverMap::CoverMap(const Domain& domain, const Block& cells, const RadiusShift& 
       motions_(1) {}
 CoverMap::~CoverMap() = default;
 
+namespace {
+
+/// The bodies as they are mapped, those of each clump together: what each covers there depends on
+/// the others, so if one moves, all are written anew.
+class Clumps {
+ public:
+  Clumps(std::span<const Body> bodies, const RadiusShift& shift) {
+    if (std::ranges::none_of(bodies, [](const Body& b) { return b.carrier != 0; })) return;
+    for (std::size_t d = 0; d < bodies.size(); ++d) {
+      mapped_.push_back(bodies[d]);
+      mapped_.back().radius = shift.radius(bodies[d].radius, bodies[d].hollow);
+      if (bodies[d].carrier != 0) members_[bodies[d].carrier].push_back(d);
+    }
+  }
+  bool none() const { return members_.empty(); }
+
+  /// Where a body has moved, looks at the others of its clump as if they had. @return  one needs
+  /// other spans
+  bool move_together(std::vector<Footprint>& footprints, std::vector<Footprint::Change>& change,
+                     const Domain& domain, const Block& cells) const {
+    bool other_spans = false;
+    for (const auto& [carrier, members] : members_) {
+      const auto moved = [&](std::size_t d) { return change[d] != Footprint::Change::None; };
+      if (std::ranges::none_of(members, moved)) continue;
+      for (const std::size_t d : members) {
+        if (moved(d)) continue;
+        Body elsewhere = mapped_[d];
+        elsewhere.radius *= 0.5;  // only a body that differs is looked at
+        footprints[d].look(elsewhere, domain, cells);
+        change[d] = footprints[d].look(mapped_[d], domain, cells);
+        other_spans = other_spans || change[d] == Footprint::Change::Spans;
+      }
+    }
+    return other_spans;
+  }
+
+  /// Writes a footprint that was looked at; of a clump less than what those before it cover.
+  void write(Footprint& footprint, std::size_t d, const Domain& domain) const {
+    footprint.write();
+    if (mapped_.empty() || mapped_[d].carrier == 0) return;
+    std::vector<Body> before;
+    for (const std::size_t other : members_.at(mapped_[d].carrier))
+      if (other < d) before.push_back(mapped_[other]);
+    if (!before.empty()) take_union(footprint, mapped_[d], before, domain);
+  }
+
+ private:
+  std::vector<Body> mapped_;
+  std::map<std::int32_t, std::vector<std::size_t>> members_;
+};
+
+}  // namespace
+
 void CoverMap::update(std::span<const Body> bodies) {
   for (std::size_t d = bodies.size(); d < footprints_.size(); ++d) unlink(footprints_[d]);
   footprints_.resize(bodies.size());
   const std::size_t first = 1 + movers_.size();
   motions_.resize(first + bodies.size());
+  const Clumps clumps(bodies, shift_);
+  carriers_.clear();
+  if (!clumps.none()) {
+    carriers_.assign(first, 0);
+    for (const Body& b : bodies) carriers_.push_back(b.carrier);
+  }
   const auto n = static_cast<std::ptrdiff_t>(bodies.size());
   std::vector<Footprint::Change> change(bodies.size());
   bool other_spans = false;
@@ -71,8 +133,14 @@ void CoverMap::update(std::span<const Body> bodies) {
     Body mapped = bodies[d];
     mapped.radius = shift_.radius(mapped.radius, mapped.hollow);
     change[d] = footprints_[d].look(mapped, domain_, cells_);
-    if (change[d] == Footprint::Change::Fractions) footprints_[d].write();
+    if (change[d] == Footprint::Change::Fractions && bodies[d].carrier == 0) footprints_[d].write();
     other_spans = other_spans || change[d] == Footprint::Change::Spans;
+  }
+  if (!clumps.none()) {
+    other_spans = clumps.move_together(footprints_, change, domain_, cells_) || other_spans;
+    for (std::ptrdiff_t d = 0; d < n; ++d)
+      if (bodies[d].carrier != 0 && change[d] == Footprint::Change::Fractions)
+        clumps.write(footprints_[d], static_cast<std::size_t>(d), domain_);
   }
   if (!other_spans) return;
   const auto other = [&](std::ptrdiff_t d) { return change[d] == Footprint::Change::Spans; };
@@ -80,7 +148,7 @@ void CoverMap::update(std::span<const Body> bodies) {
     if (other(d)) unlink(footprints_[d]);
 #pragma omp parallel for schedule(static) if (n >= kManyBodies)
   for (std::ptrdiff_t d = 0; d < n; ++d)
-    if (other(d)) footprints_[d].write();
+    if (other(d)) clumps.write(footprints_[d], static_cast<std::size_t>(d), domain_);
   for (std::ptrdiff_t d = 0; d < n; ++d)
     if (other(d)) link(footprints_[d], static_cast<std::int32_t>(first + d));
 }
@@ -187,6 +255,19 @@ void CoverMap::unlink(std::size_t place, CoverBlock& block) {
   *here = block.next;
 }
 
+/// What a solid's fractions count in a block that it shares: 1, or so much less that those of its
+/// clump add up to a whole cell.
+Pack CoverMap::part_of_union(const CoverBlock& first, const CoverBlock& block) const {
+  const std::int32_t carrier = carriers_[block.motion];
+  Pack sum(0.0);
+  if (carrier == 0) return Pack(1.0);
+  for (const CoverBlock* other = &first; other; other = other->next)
+    if (carriers_[other->motion] == carrier) sum += fraction_of(load<Pack>(other->cover.data()));
+  Pack part(1.0);
+  where(sum > Pack(1.0), part) = Pack(1.0) / sum;
+  return part;
+}
+
 template <int D>
 CoverMap::Shared<D> CoverMap::merge(const CoverBlock& first) const {
   Shared<D> all;
@@ -194,7 +275,9 @@ CoverMap::Shared<D> CoverMap::merge(const CoverBlock& first) const {
   Pack sum(0.0);
   Pack::mask_type core(false), wall(false);
   for (const CoverBlock* block = &first; block; block = block->next) {
-    const Pack cover = load<Pack>(block->cover.data()), eps = fraction_of(cover);
+    const Pack cover = load<Pack>(block->cover.data());
+    Pack eps = fraction_of(cover);
+    if (!carriers_.empty()) eps *= part_of_union(first, *block);
     core = core || cover == Pack(kCore);
     wall = wall || cover == Pack(kWall);
     sum += eps;
@@ -215,9 +298,10 @@ CoverMap::Shared<D> CoverMap::merge(const CoverBlock& first) const {
 }
 
 template <int D>
-void CoverMap::split(CoverBlock& first, const Pack& scale, const Pack (&force)[D]) {
+void CoverMap::split(CoverBlock& first, const Pack& scale, const Pack (&force)[D]) const {
   for (CoverBlock* block = &first; block; block = block->next) {
-    const Pack part = scale * fraction_of(load<Pack>(block->cover.data()));
+    Pack part = scale * fraction_of(load<Pack>(block->cover.data()));
+    if (!carriers_.empty()) part *= part_of_union(first, *block);
     Pack f[D];
     for (int a = 0; a < D; ++a) f[a] = part * force[a];
     keep_force<D>(*block, f);
@@ -226,8 +310,8 @@ void CoverMap::split(CoverBlock& first, const Pack& scale, const Pack (&force)[D
 
 template CoverMap::Shared<2> CoverMap::merge<2>(const CoverBlock&) const;
 template CoverMap::Shared<3> CoverMap::merge<3>(const CoverBlock&) const;
-template void CoverMap::split<2>(CoverBlock&, const Pack&, const Pack (&)[2]);
-template void CoverMap::split<3>(CoverBlock&, const Pack&, const Pack (&)[3]);
+template void CoverMap::split<2>(CoverBlock&, const Pack&, const Pack (&)[2]) const;
+template void CoverMap::split<3>(CoverBlock&, const Pack&, const Pack (&)[3]) const;
 
 template <int D>
 BodyLoad CoverMap::load_of(std::span<const CoverBlock> blocks) {

@@ -53,7 +53,8 @@ class CoverMap {
 
   const Motion& motion(const CoverBlock& block) const { return motions_[block.motion]; }
 
-  /// Cells of a block that several solids share.
+  /// Cells of a block that several solids share. Those of one clump count as their union: together
+  /// they cover no more than a whole cell.
   template <int D>
   struct Shared {
     Pack cover;  ///< as of one solid
@@ -64,7 +65,7 @@ class CoverMap {
   Shared<D> merge(const CoverBlock& first) const;
   /// Gives each solid of a block its part of the force on them, ε / Σ ε.
   template <int D>
-  static void split(CoverBlock& first, const Pack& scale, const Pack (&force)[D]);
+  void split(CoverBlock& first, const Pack& scale, const Pack (&force)[D]) const;
 
   /// Load of each body from the forces of the last sweep. Sums run over each body's own cells in a
   /// fixed order, so a load depends neither on threads nor on the order of the bodies.
@@ -91,6 +92,7 @@ class CoverMap {
   void unlink(Footprint& footprint);
   void unlink(std::size_t place, CoverBlock& block);
   static void insert(CoverBlock*& at, CoverBlock& block);
+  Pack part_of_union(const CoverBlock& first, const CoverBlock& block) const;
   template <int D>
   static BodyLoad load_of(std::span<const CoverBlock> blocks);
   std::vector<CoverBlock> fill_blocks(const Geometry& geometry);
@@ -103,6 +105,7 @@ class CoverMap {
   int blocks_per_row_;
   std::vector<CoverBlock*> index_;                      // [layer][row][block], then kRowsEnd nulls
   std::vector<Motion> motions_;                         // at rest; of each mover; of each body
+  std::vector<std::int32_t> carriers_;                  // [motion]; empty where there is no clump
   std::vector<Footprint> footprints_;                   // [body]
   std::vector<std::vector<CoverBlock>> walls_, fixed_;  // [wall]; [solid that was added]
   std::vector<Mover> movers_;                           // those among fixed_ that move

@@ -183,7 +183,7 @@ class RowKernel final : public Kernel {
     const Vector<L, Pack> force = solid.template apply<L>(f, collide_, cell);
     unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
     if (shared) [[unlikely]]
-      CoverMap::split<L::D>(block, scale, force.at);
+      cover.split<L::D>(block, scale, force.at);
     else
       keep_force<L::D>(block, force.at);
   }

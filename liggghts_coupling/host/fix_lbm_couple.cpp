@@ -78,6 +78,12 @@ void FixLbmCouple::init() {
                        modify->fix[i]->id, style));
     if (holds) frozen_groups_ |= modify->fix[i]->groupbit;
   }
+  clumps_.find();
+  if (clumps_.has_rigid() &&
+      Coupling::instance().session->fluid().features & protocol::kCheckpoints)
+    fail(
+        "a fix rigid keeps nothing of its bodies in restart files: leave out run.checkpoint_every "
+        "of the scene, or use fix multisphere");
   if (Coupling::instance().session->fluid().features & protocol::kCheckpoints) note_particles();
 }
 
@@ -86,8 +92,10 @@ void FixLbmCouple::setup_pre_exchange() {
   count_leaving();
   if (coupling_->setting_up_again()) return;
   const ScriptChecks checks(lmp);
-  checks.refuse_clumps();
-  checks.refuse_overlaps(groupbit);
+  checks.refuse_other_shapes();
+  if (clumps_.in_part(groupbit))
+    fail("its group holds some spheres of clumps and leaves others out; give it all of them");
+  checks.refuse_overlaps(groupbit, clumps_.carriers());
 }
 
 /// The end of LIGGGHTS' set-up: of a run, or, within one, of `set_up_again`.
@@ -109,7 +117,8 @@ void FixLbmCouple::begin() {
   Coupling& job = Coupling::instance();
   if (job.agreed) fail("was removed and made anew: keep the first one for all runs");
   const protocol::Hello mine = hello();
-  if (*mine.particles > 0) SolidHello(lmp, groupbit, coupling_->substeps()).expect_motion();
+  if (*mine.particles > 0)
+    SolidHello(lmp, groupbit, coupling_->substeps(), clumps_).expect_motion();
   step_ = update->ntimestep;
   time_step_ = update->dt;
   bonds_->first_step = static_cast<long>(step_ - mine.first_interval * coupling_->substeps());

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "liggghts_coupling/bond/bond_book.h"
+#include "liggghts_coupling/host/script_clumps.h"
 #include "protocol/solid/particle_coupling.h"
 
 namespace dem {
@@ -74,6 +75,10 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
   protocol::Setting setting() const override;
   std::optional<protocol::SolidReport> report() const override;
   int index_of(std::int64_t id) const override;
+  std::vector<protocol::EngineClump> clumps() override { return clumps_.clumps(); }
+  void push_clumps(std::span<const protocol::Load> loads, bool at_end) override {
+    clumps_.push(loads, at_end);
+  }
   void set_up_again() override;
   void write_part(protocol::SolidParts& parts, std::int64_t interval) override;
   void note_wishes(std::uint32_t flags) override;
@@ -91,6 +96,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
 
   std::shared_ptr<BondBook> bonds_ = BondBook::of(lmp);
   std::optional<protocol::ParticleCoupling> coupling_;
+  ScriptClumps clumps_{lmp};
   double** held_ = nullptr;        ///< [nmax][kColumns]; force [N], torque [N m], …
   int frozen_groups_ = 0;          ///< whose forces fix freeze or setforce sets
   LAMMPS_NS::bigint step_ = 0;     ///< of the run that ended last

@@ -75,7 +75,7 @@ void FixLbmCouple::note_particles() {
 }
 
 /// Beside the particles, a line of text a value: the coupling interval, radii by type, particles
-/// that have left, the ledger of bonds.
+/// that have left, loads on clumps, the ledger of bonds.
 void FixLbmCouple::write_restart(FILE* file) {
   const std::string ledger = save_ledger(*bonds_, world);
   std::int64_t left = 0;
@@ -84,7 +84,12 @@ void FixLbmCouple::write_restart(FILE* file) {
   std::string text = fmt::format("{}\ninterval {}\n", kHeading, coupling_->interval());
   for (const auto& [type, radii] : type_radii_)
     text += fmt::format("radii {} {} {}\n", type, radii.lo, radii.hi);
-  text += fmt::format("left {}\n", left) + ledger;
+  text += fmt::format("left {}\n", left);
+  for (const protocol::Load& load : coupling_->clumps().loads()) {
+    const auto& [id, f, t] = load;
+    text += fmt::format("clump {} {} {} {} {} {} {}\n", id, f[0], f[1], f[2], t[0], t[1], t[2]);
+  }
+  text += ledger;
   const int size = static_cast<int>(text.size()) + 1;  // with the zero at its end
   std::fwrite(&size, sizeof size, 1, file);
   std::fwrite(text.c_str(), 1, static_cast<std::size_t>(size), file);
@@ -106,20 +111,25 @@ void FixLbmCouple::restart(char* buffer) {
                     "of the two parts of the checkpoint is not its own",
                     interval, begin));
   auto rest = lines.tellg();
-  while (lines >> name && (name == "radii" || name == "left")) {
+  std::vector<protocol::Load> clumps;
+  while (lines >> name && (name == "radii" || name == "left" || name == "clump")) {
     if (name == "left") {
       std::int64_t left = 0;
-      lines >> left >> std::ws;
+      lines >> left;
       left_ = comm->me == 0 ? left : 0;  // a sum over all ranks
-      rest = lines.tellg();
-      continue;
+    } else if (name == "clump") {
+      auto& [id, f, t] = clumps.emplace_back();
+      lines >> id >> f[0] >> f[1] >> f[2] >> t[0] >> t[1] >> t[2];
+    } else {
+      int type = 0;
+      protocol::Range radii;
+      lines >> type >> radii.lo >> radii.hi;
+      type_radii_[type] = radii;
     }
-    int type = 0;
-    protocol::Range radii;
-    lines >> type >> radii.lo >> radii.hi >> std::ws;
-    type_radii_[type] = radii;
+    lines >> std::ws;
     rest = lines.tellg();
   }
+  coupling_->clumps().set_loads(std::move(clumps));
   try {
     load_ledger(text.substr(static_cast<std::size_t>(rest)), *bonds_, world);
   } catch (const std::invalid_argument& error) {

@@ -37,7 +37,8 @@ protocol::EngineParticles FixLbmCouple::particles() {
           .omega = atom->omega,
           .force = atom->f,
           .torque = atom->torque,
-          .held = held_};
+          .held = held_,
+          .carrier = clumps_.carriers()};
 }
 
 std::int64_t FixLbmCouple::step_number() const {
@@ -57,7 +58,7 @@ protocol::Setting FixLbmCouple::setting() const {
 /// What the script is set up to do.
 protocol::Hello FixLbmCouple::hello() const {
   const protocol::Hello& fluid = Coupling::instance().session->fluid();
-  protocol::Hello hello = SolidHello(lmp, groupbit, coupling_->substeps()).collect();
+  protocol::Hello hello = SolidHello(lmp, groupbit, coupling_->substeps(), clumps_).collect();
   if (hello.buoyancy != protocol::Buoyancy::BySolid)
     hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
                                                                 : protocol::Buoyancy::ByFluid;

@@ -17,10 +17,9 @@
 namespace dem {
 namespace {
 
-/// Fixes whose particles are no single spheres.
-constexpr std::array kClumps{"multisphere", "multisphere/nointegration", "multisphere/break",
-                             "concave",     "nve/superquadric",          "nve/asphere",
-                             "nve/line"};
+/// Fixes whose particles are neither single spheres nor clumps that stay whole and move.
+constexpr std::array kOthers{"multisphere/nointegration", "multisphere/break", "concave",
+                             "nve/superquadric",          "nve/asphere",       "nve/line"};
 
 template <class... Args>
 [[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) {
@@ -30,28 +29,24 @@ template <class... Args>
 
 }  // namespace
 
-void ScriptChecks::refuse_clumps() const {
+void ScriptChecks::refuse_other_shapes() const {
   for (int i = 0; i < modify->nfix; ++i) {
     const auto& fix = *modify->fix[i];
     const std::string style = fix.style;
-    if (std::find(kClumps.begin(), kClumps.end(), style) != kClumps.end())
+    if (std::find(kOthers.begin(), kOthers.end(), style) != kOthers.end())
       refuse(
-          "fix {} {} moves particles that are no single spheres; they cannot couple yet: the fluid "
-          "would count buoyancy and the fluid inside once a sphere. Use single spheres "
-          "(fix nve/sphere)",
+          "fix {} {} has particles that are neither spheres nor rigid bodies of them; they cannot "
+          "couple. Use spheres (fix nve/sphere) or clumps (fix multisphere, fix rigid)",
           fix.id, style);
-    if (style != "rigid") continue;
-    if (const auto pair = find_overlap(balls(fix.groupbit), box(), protocol::Depth::Surface))
-      refuse(
-          "fix {} {} joins spheres that overlap: {}. Such clumps cannot couple yet: the fluid "
-          "would count buoyancy and the fluid inside once a sphere. Use spheres that do not "
-          "overlap",
-          fix.id, style, describe(*pair));
   }
 }
 
-void ScriptChecks::refuse_overlaps(int groupbit) const {
-  if (const auto pair = find_overlap(balls(groupbit), box()))
+bool ScriptChecks::joins_overlapping(int groupbit) const {
+  return find_overlap(balls(groupbit), box(), protocol::Depth::Surface).has_value();
+}
+
+void ScriptChecks::refuse_overlaps(int groupbit, const std::int64_t* carriers) const {
+  if (const auto pair = find_overlap(balls(groupbit, carriers), box()))
     refuse("{}; the centre of one lies in the other: correct their places or diameters",
            describe(*pair));
 }
@@ -87,12 +82,13 @@ std::string ScriptChecks::fix_of_style(const std::string& style) const {
   return {};
 }
 
-std::vector<protocol::Ball> ScriptChecks::balls(int groupbit) const {
+std::vector<protocol::Ball> ScriptChecks::balls(int groupbit, const std::int64_t* carriers) const {
   return protocol::balls_of({.count = atom->nlocal,
                              .id = atom->tag,
                              .mask = atom->mask,
                              .radius = atom->radius,
-                             .x = atom->x},
+                             .x = atom->x,
+                             .carrier = carriers},
                             groupbit);
 }
 

@@ -16,12 +16,16 @@ class ScriptChecks : protected LAMMPS_NS::Pointers {
  public:
   explicit ScriptChecks(LAMMPS_NS::LAMMPS* lammps) : Pointers(lammps) {}
 
-  /// Particles that are more than one sphere, or none: the fluid knows spheres only.
-  void refuse_clumps() const;
+  /// Particles that are no rigid bodies of spheres.
+  void refuse_other_shapes() const;
 
-  /// Particles of a group with the centre of one in the other, on this rank. LIGGGHTS itself takes
-  /// minutes to find the neighbours of some thousand at one place.
-  void refuse_overlaps(int groupbit) const;
+  /// Some spheres of a group overlap, on this rank.
+  bool joins_overlapping(int groupbit) const;
+
+  /// Particles of a group with the centre of one in the other, on this rank, but spheres of one
+  /// clump. LIGGGHTS itself takes minutes to find the neighbours of some thousand at one place.
+  /// @param carriers  of each particle its clump; may be null
+  void refuse_overlaps(int groupbit, const std::int64_t* carriers) const;
 
   /// The time step is another one. @param step  agreed [s]
   [[noreturn]] void refuse_step(double step) const;
@@ -31,7 +35,7 @@ class ScriptChecks : protected LAMMPS_NS::Pointers {
 
  private:
   std::string fix_of_style(const std::string& style) const;
-  std::vector<protocol::Ball> balls(int groupbit) const;
+  std::vector<protocol::Ball> balls(int groupbit, const std::int64_t* carriers = nullptr) const;
   protocol::Hello box() const;
 };
 

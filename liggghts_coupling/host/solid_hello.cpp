@@ -25,8 +25,9 @@ double particle_volume(int dimension, double radius, double depth) {
   return dimension == 2 ? disc * depth : disc * radius * 4.0 / 3.0;
 }
 
-SolidHello::SolidHello(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps)
-    : Pointers(lammps), groupbit_(groupbit), substeps_(substeps) {}
+SolidHello::SolidHello(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps,
+                       const ScriptClumps& clumps)
+    : Pointers(lammps), groupbit_(groupbit), substeps_(substeps), clumps_(clumps) {}
 
 Hello SolidHello::collect() {
   Hello hello;
@@ -86,17 +87,23 @@ void SolidHello::particles(Hello& hello) const {
   constexpr double huge = std::numeric_limits<double>::max();
   double least[3] = {huge, huge, huge};
   double most[3] = {0.0, 0.0, -huge};
+  const auto note = [&](int k, double value) {
+    least[k] = std::min(least[k], value);
+    most[k] = std::max(most[k], value);
+  };
   std::int64_t count = 0;
+  const std::int64_t* carriers = clumps_.carriers();
   for (int i = 0; i < atom->nlocal; ++i) {
     if (!(atom->mask[i] & groupbit_)) continue;
+    note(0, atom->radius[i]);
+    note(2, atom->x[i][2]);
+    if (carriers && carriers[i] != protocol::kItself) continue;
     ++count;
-    const double r = atom->radius[i];
-    const double density = atom->rmass[i] / particle_volume(domain->dimension, r, hello.depth);
-    const double values[3] = {r, density, atom->x[i][2]};
-    for (int k = 0; k < 3; ++k) {
-      least[k] = std::min(least[k], values[k]);
-      most[k] = std::max(most[k], values[k]);
-    }
+    note(1, atom->rmass[i] / particle_volume(domain->dimension, atom->radius[i], hello.depth));
+  }
+  for (const protocol::EngineClump& clump : clumps_.clumps()) {
+    ++count;
+    if (clump.volume > 0.0) note(1, clump.mass / clump.volume);
   }
   MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, world);
   MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, world);
@@ -111,7 +118,7 @@ void SolidHello::particles(Hello& hello) const {
                            count, least[2], most[2])
                    .c_str());
   hello.radius = protocol::Range{least[0], most[0]};
-  hello.density = protocol::Range{least[1], most[1]};
+  if (least[1] <= most[1]) hello.density = protocol::Range{least[1], most[1]};
 }
 
 }  // namespace dem

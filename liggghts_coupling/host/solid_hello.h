@@ -3,6 +3,7 @@
 
 #include <pointers.h>
 
+#include "liggghts_coupling/host/script_clumps.h"
 #include "protocol/wire/messages.h"
 
 namespace dem {
@@ -10,7 +11,7 @@ namespace dem {
 /// Reads from a set-up LIGGGHTS what the fluid must agree on.
 class SolidHello : protected LAMMPS_NS::Pointers {
  public:
-  SolidHello(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps);
+  SolidHello(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps, const ScriptClumps& clumps);
 
   /// Collective over the DEM ranks. Fails with LIGGGHTS' own error where the set-up cannot couple.
   protocol::Hello collect();
@@ -22,6 +23,7 @@ class SolidHello : protected LAMMPS_NS::Pointers {
   void forces(protocol::Hello& hello) const;
   void particles(protocol::Hello& hello) const;
   int groupbit_, substeps_;
+  const ScriptClumps& clumps_;
 };
 
 /// Volume of a particle: a sphere, or in 2D a disc of the given depth.

@@ -79,7 +79,11 @@ typedef struct {
   double x[3], v[3], omega[3]; /* [m], [m/s], [rad/s] */
 } bplbm_state;
 
-/* What rarely changes. Given with every state; the library sends it only where it has changed. */
+/* What rarely changes. Given with every state; the library sends it only where it has changed.
+ *
+ * A clump, a rigid body of spheres that may overlap, is a carrier (mass, inertia, volume of the
+ * union, radius of the ball about its centre that holds all spheres) and spheres that name it and
+ * have mass, inertia and volume 0. One rank gives them all; the load is the carrier's. */
 typedef struct {
   int64_t id;
   double radius;   /* [m] */
@@ -87,7 +91,7 @@ typedef struct {
   double inertia;  /* about the centre [kg m^2] */
   int64_t type;    /* any number; 1 where there is one kind */
   int64_t epoch;   /* another one where the id has passed to another particle; else 0 */
-  int64_t carrier; /* BPLBM_ITSELF */
+  int64_t carrier; /* BPLBM_ITSELF, or the clump that it is a sphere of */
   double volume;   /* 0: that of its ball, or disc times depth [m^3] */
 } bplbm_shape;
 #define BPLBM_ITSELF (-1)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "protocol/wire/clumps.h"
+
 namespace protocol {
 
 std::vector<Ball> balls_of(const EngineParticles& p, int group) {
@@ -11,7 +13,9 @@ std::vector<Ball> balls_of(const EngineParticles& p, int group) {
   for (int i = 0; i < p.count; ++i) {
     const double* x = p.x[i];
     const bool usable = std::isfinite(x[0] + x[1] + x[2]) && p.radius[i] > 0.0;
-    if ((p.mask[i] & group) && usable) balls.push_back({p.id[i], {x[0], x[1], x[2]}, p.radius[i]});
+    if (!(p.mask[i] & group) || !usable) continue;
+    balls.push_back({p.id[i], {x[0], x[1], x[2]}, p.radius[i]});
+    if (p.carrier) balls.back().carrier = p.carrier[i];
   }
   return balls;
 }
@@ -55,10 +59,20 @@ void ParticleCoupling::end_step() {
   if (!overlapped_ && !progress_.over) take_loads(true);
 }
 
+namespace {
+
+/// A sphere of a clump.
+bool is_part(const EngineParticles& p, int i) {
+  return p.carrier && p.carrier[i] != kItself;
+}
+
+}  // namespace
+
 void ParticleCoupling::add_loads() {
   const EngineParticles p = engine_.particles();
+  if (any_clumps_) engine_.push_clumps(clumps_.loads(), false);
   for (int i = 0; i < p.count; ++i) {
-    if (!(p.mask[i] & p.group)) continue;
+    if (!(p.mask[i] & p.group) || is_part(p, i)) continue;
     for (int k = 0; k < 3; ++k) {
       p.force[i][k] += p.held[i][kHeldForce + k];
       p.torque[i][k] += p.held[i][kHeldTorque + k];
@@ -72,7 +86,7 @@ void ParticleCoupling::gather(const EngineParticles& p) {
   local_.clear();
   const double factor = p.dimension == 2 ? 0.5 : 0.4;  // inertia of a disc, of a sphere
   for (int i = 0; i < p.count; ++i) {
-    if (!(p.mask[i] & p.group)) continue;
+    if (!(p.mask[i] & p.group) || is_part(p, i)) continue;
     const double *x = p.x[i], *v = p.v[i], *w = p.omega[i];
     const double r = p.radius[i], m = p.mass[i];
     states_.push_back({p.id[i], {x[0], x[1], x[2]}, {v[0], v[1], v[2]}, {w[0], w[1], w[2]}});
@@ -84,6 +98,36 @@ void ParticleCoupling::gather(const EngineParticles& p) {
                        static_cast<std::int64_t>(p.held[i][kHeldEpoch])});
     local_.push_back(i);
   }
+  gather_clumps(p);
+}
+
+/// All ranks together, where any of them has a clump.
+void ParticleCoupling::gather_clumps(const EngineParticles& p) {
+  const std::vector<EngineClump> mine = engine_.clumps();
+  int any = mine.empty() ? 0 : 1;
+  const MPI_Comm comm = engine_.communicator();
+  MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, comm);
+  any_clumps_ = any != 0;
+  if (!any_clumps_) return;
+  std::vector<EngineSphere> spheres;
+  for (int i = 0; i < p.count; ++i) {
+    if (!(p.mask[i] & p.group) || !is_part(p, i)) continue;
+    const double *x = p.x[i], *v = p.v[i], *w = p.omega[i];
+    spheres.push_back({p.id[i],
+                       p.carrier[i],
+                       p.type[i],
+                       p.radius[i],
+                       {x[0], x[1], x[2]},
+                       {v[0], v[1], v[2]},
+                       {w[0], w[1], w[2]}});
+  }
+  const Setting now = engine_.setting();
+  Hello box = session_.fluid();
+  box.box_lo = now.box_lo;
+  box.box_hi = now.box_hi;
+  clumps_.gather(comm, box, mine, spheres, {states_, shapes_});
+  for (std::size_t n = local_.size(); n < shapes_.size(); ++n)
+    local_.push_back(is_part(shapes_[n]) ? kPart : kClump);
 }
 
 void ParticleCoupling::send_states(std::uint32_t flags) {
@@ -134,12 +178,16 @@ void ParticleCoupling::take_loads(bool add_change) {
   checkpoint_asked_ = reply.flags & kCheckpoint;
   engine_.note_wishes(reply.flags);
   const EngineParticles p = engine_.particles();
+  if (any_clumps_) take_clump_loads(reply.loads, add_change);
   if (!overlapped_) {
-    for (std::size_t n = 0; n < local_.size(); ++n) hold(p, local_[n], reply.loads[n], add_change);
+    for (std::size_t n = 0; n < local_.size(); ++n)
+      if (local_[n] >= 0) hold(p, local_[n], reply.loads[n], add_change);
     return;
   }
   std::vector<Load> orphans;  // of particles that have left this rank since
-  for (const Load& load : reply.loads) {
+  for (std::size_t n = 0; n < local_.size(); ++n) {
+    if (local_[n] < 0) continue;
+    const Load& load = reply.loads[n];
     const int i = engine_.index_of(load.id);
     if (i >= 0 && i < p.count)
       hold(p, i, load, add_change);
@@ -147,6 +195,15 @@ void ParticleCoupling::take_loads(bool add_change) {
       orphans.push_back(load);
   }
   forward(p, orphans, add_change);
+}
+
+/// All ranks together.
+void ParticleCoupling::take_clump_loads(std::span<const Load> loads, bool add_change) {
+  std::vector<Load> mine;
+  for (std::size_t n = 0; n < local_.size(); ++n)
+    if (local_[n] == kClump) mine.push_back(loads[n]);
+  const std::vector<Load> changes = clumps_.take(engine_.communicator(), mine);
+  if (add_change) engine_.push_clumps(changes, true);
 }
 
 /// Brings loads to the ranks that own their particles now.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "protocol/program/solid_parts.h"
+#include "protocol/solid/clump_coupling.h"
 #include "protocol/wire/overlap.h"
 #include "protocol/wire/session.h"
 
@@ -37,6 +38,8 @@ struct EngineParticles {
   double *const *x = nullptr, *const *v = nullptr, *const *omega = nullptr;
   double *const *force = nullptr, *const *torque = nullptr;
   double* const* held = nullptr;  ///< [count][at least kHeldColumns]
+  /// Of each the clump that it is a sphere of, or kItself; null where there is no clump.
+  const std::int64_t* carrier = nullptr;
 };
 
 /// Places and radii of the particles of a group, for `find_overlap`; without those that have none.
@@ -59,6 +62,12 @@ class Engine {
   virtual Setting setting() const = 0;
   /// What there is to say of this rank beside its states.
   virtual std::optional<SolidReport> report() const { return {}; }
+  /// The clumps that this rank answers for; those of all ranks are all clumps that the carriers of
+  /// `particles` name.
+  virtual std::vector<EngineClump> clumps() { return {}; }
+  /// Adds loads to clumps, those of all ranks: to the forces of the step that is computed, or, at
+  /// the end of one, to those that are still there and act in the next first half-step.
+  virtual void push_clumps(std::span<const Load> /*loads*/, bool /*at_end*/) {}
   /// Index of the particle of an id, which is one of `particles` where it is below their number.
   virtual int index_of(std::int64_t id) const = 0;
   /// Does in the middle of a run what its beginning does: sorts and distributes particles, finds
@@ -97,9 +106,12 @@ class ParticleCoupling {
   void set_interval(std::int64_t interval) { interval_ = interval; }
   std::int64_t first_step() const { return first_step_; }
   SolidParts& parts() { return *parts_; }
+  ClumpCoupling& clumps() { return clumps_; }
 
  private:
   void gather(const EngineParticles& particles);
+  void gather_clumps(const EngineParticles& particles);
+  void take_clump_loads(std::span<const Load> loads, bool add_change);
   void send_states(std::uint32_t flags = kContinue);
   void take_loads(bool add_change);
   void forward(const EngineParticles& p, std::vector<Load>& orphans, bool add_change);
@@ -116,7 +128,10 @@ class ParticleCoupling {
   std::optional<SolidParts> parts_;
   std::vector<State> states_;  // buffers of one exchange
   std::vector<Shape> shapes_;
-  std::vector<int> local_;
+  std::vector<int> local_;  ///< of each state the particle; of a clump and its spheres see below
+  static constexpr int kClump = -1, kPart = -2;
+  ClumpCoupling clumps_;
+  bool any_clumps_ = false;
 };
 
 }  // namespace protocol

@@ -81,28 +81,51 @@ double ArrivalCheck::agreed_volume(double radius) const {
   return fluid_.dimension == 2 ? disc * fluid_.depth : disc * radius * 4.0 / 3.0;
 }
 
-void ArrivalCheck::shape(const Shape& s, const Shape* known, std::int64_t interval) const {
+void ArrivalCheck::shape(const Shape& s, const Shape* known, bool clump,
+                         std::int64_t interval) const {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
-  if (!positive(s.radius) || !positive(s.mass) || !positive(s.inertia))
+  const bool part = is_part(s);
+  if (part && (s.mass != 0.0 || s.inertia != 0.0 || s.volume != 0.0))
+    refuse(
+        "particle {} is a sphere of clump {}, but has a mass of {} kg, an inertia of {} kg m² and "
+        "a volume of {} m³ at interval {}: the clump has them, a sphere of it says 0",
+        s.id, s.carrier, s.mass, s.inertia, s.volume, interval);
+  if (!positive(s.radius) || (!part && (!positive(s.mass) || !positive(s.inertia))))
     refuse("particle {}: radius {} m, mass {} kg, inertia {} kg m² must be positive (interval {})",
            s.id, s.radius, s.mass, s.inertia, interval);
+  clump = clump && !part;
+  if (clump && !positive(s.volume))
+    refuse("clump {}: volume {} m³ at interval {}: tell that of the union of its spheres", s.id,
+           s.volume, interval);
   if (s.type < 1)
     refuse("particle {}: type {} at interval {}: types begin at 1", s.id, s.type, interval);
-  if (s.carrier != kItself && s.carrier != s.id)
+  if (!clump) sizes(s, interval);
+  if (!part) inertia(s, clump ? s.volume : agreed_volume(s.radius), interval);
+  if (known && known->epoch == s.epoch &&
+      std::abs(s.radius - known->radius) > kGrowth * known->radius)
     refuse(
-        "particle {} belongs to body {} (interval {}): clumps of several spheres cannot couple "
-        "yet, buoyancy and inner fluid would count once a sphere",
-        s.id, s.carrier, interval);
+        "particle {}: radius {:.6g} m at interval {}, {:.6g} m one exchange before: let it grow by "
+        "less than a tenth between two, or begin it anew with another epoch",
+        s.id, s.radius, interval, known->radius);
+}
+
+namespace {
+
+bool within(double value, const std::optional<Range>& range) {
+  const double slack = range ? kSlack * range->hi : 0.0;
+  return !range || (value >= range->lo - slack && value <= range->hi + slack);
+}
+
+}  // namespace
+
+/// Of what covers cells: a grain, or a sphere of a clump.
+void ArrivalCheck::sizes(const Shape& s, std::int64_t interval) const {
   const int longest = fluid_.dimension == 2 ? 2 : 3;
   const double side = *std::min_element(length_.begin(), length_.begin() + longest);
   if (s.radius > side)
     refuse("particle {}: radius {:.6g} m at interval {} is larger than the box ({:.6g} m)", s.id,
            s.radius, interval, side);
-  const auto inside = [](double value, const std::optional<Range>& range) {
-    const double slack = range ? kSlack * range->hi : 0.0;
-    return !range || (value >= range->lo - slack && value <= range->hi + slack);
-  };
-  if (!inside(s.radius, fluid_.radius))
+  if (!within(s.radius, fluid_.radius))
     refuse(
         "particle {}: diameter {:.6g} m at interval {}, the scene's particles.diameter says {:.6g} "
         "… {:.6g} m; correct one of them",
@@ -111,7 +134,11 @@ void ArrivalCheck::shape(const Shape& s, const Shape* known, std::int64_t interv
   if (s.volume != 0.0 && !(std::abs(s.volume - volume) <= kSlack * volume))
     refuse("particle {}: volume {:.6g} m³ at interval {}, a ball of its radius has {:.6g} m³", s.id,
            s.volume, interval, volume);
-  if (const double density = s.mass / volume; !inside(density, fluid_.density))
+}
+
+/// Of what has a mass: a grain, or a clump.
+void ArrivalCheck::inertia(const Shape& s, double volume, std::int64_t interval) const {
+  if (const double density = s.mass / volume; !within(density, fluid_.density))
     refuse(
         "particle {}: density {:.6g} kg/m³ at interval {} (mass {:.6g} kg in {:.6g} m³), the "
         "scene's particles.density says {:.6g} … {:.6g} kg/m³; correct one of them{}",
@@ -124,12 +151,6 @@ void ArrivalCheck::shape(const Shape& s, const Shape* known, std::int64_t interv
         "particle {}: inertia {:.6g} kg m² at interval {}: no ball of {:.6g} kg and radius {:.6g} "
         "m has more than {:.6g} kg m²",
         s.id, s.inertia, interval, s.mass, s.radius, most);
-  if (known && known->epoch == s.epoch &&
-      std::abs(s.radius - known->radius) > kGrowth * known->radius)
-    refuse(
-        "particle {}: radius {:.6g} m at interval {}, {:.6g} m one exchange before: let it grow by "
-        "less than a tenth between two, or begin it anew with another epoch",
-        s.id, s.radius, interval, known->radius);
 }
 
 /// On an axis that is not periodic, no farther out than a particle that touches fluid.
@@ -168,6 +189,7 @@ void ArrivalCheck::examine(const Particle& now, const State* before, std::int64_
   expect_finite(s.id, s.x, "position", interval);
   expect_finite(s.id, s.v, "velocity", interval);
   expect_finite(s.id, s.omega, "angular velocity", interval);
+  if (is_part(shape)) return;  // its place is held against its carrier's
   if (!inside(now)) {
     double out = 0.0;
     for (unsigned k = 0; k < fluid_.dimension; ++k)
@@ -192,12 +214,14 @@ void ArrivalCheck::examine(const Particle& now, const State* before, std::int64_
 }
 
 void ArrivalCheck::overlaps(std::span<const Particle> particles, std::span<const char> is_new,
+                            const std::function<bool(std::int64_t)>& is_clump,
                             std::int64_t interval) const {
   std::vector<Ball> balls;
   balls.reserve(particles.size());
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const auto& [s, shape] = particles[i];
-    balls.push_back({s.id, s.x, shape.radius, is_new[i] != 0});
+    if (is_clump(s.id)) continue;
+    balls.push_back({s.id, s.x, shape.radius, is_new[i] != 0, carrier_of(shape)});
   }
   if (const auto pair = find_overlap(balls, fluid_))
     refuse(

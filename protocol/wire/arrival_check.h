@@ -3,9 +3,11 @@
 /// scene when it arrives, whichever program it is.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <utility>
 
+#include "protocol/wire/clumps.h"
 #include "protocol/wire/messages.h"
 
 namespace protocol {
@@ -20,7 +22,8 @@ class ArrivalCheck {
   void setting(const Setting& now, std::int64_t interval) const;
 
   /// @param known  what was told of the particle before; null for one that is new
-  void shape(const Shape& shape, const Shape* known, std::int64_t interval) const;
+  /// @param clump  spheres name it as their carrier (ClumpCheck holds it against them)
+  void shape(const Shape& shape, const Shape* known, bool clump, std::int64_t interval) const;
 
   /// A particle that has just come.
   void first_state(const Particle& now, std::int64_t interval) const {
@@ -30,6 +33,7 @@ class ArrivalCheck {
   /// farther than a diameter from where they were, which is seen without a branch.
   void next_state(const State& s, const Shape& shape, const State& before,
                   std::int64_t interval) const {
+    if (is_part(shape)) return examine({s, shape}, &before, interval);
     const double diameter = 2.0 * shape.radius;
     double squares = 0.0;
     bool good = true;
@@ -48,8 +52,9 @@ class ArrivalCheck {
   void note_loads(double acceleration) { kicks_[0] = std::exchange(kicks_[1], acceleration); }
 
   /// @param particles  all of an interval; `is_new` those whose shape came with it
+  /// @param is_clump   of which spheres are among them
   void overlaps(std::span<const Particle> particles, std::span<const char> is_new,
-                std::int64_t interval) const;
+                const std::function<bool(std::int64_t)>& is_clump, std::int64_t interval) const;
 
  private:
   bool inside(const Particle& now) const;
@@ -58,6 +63,8 @@ class ArrivalCheck {
   double moved(const State& now, const State& before, unsigned axis) const;
   void examine(const Particle& now, const State* before, std::int64_t interval) const;
   double agreed_volume(double radius) const;
+  void sizes(const Shape& shape, std::int64_t interval) const;
+  void inertia(const Shape& shape, double volume, std::int64_t interval) const;
 
   Hello fluid_;
   double interval_;    ///< [s]

@@ -147,6 +147,7 @@ std::optional<Overlap> find_overlap(std::span<const Ball> balls, const Hello& bo
         for (const bool is_new : {false, true}) {
           if (!is_new && !ball.is_new) continue;
           for (int j = lists[is_new].first(key); j != kNone && !found; j = lists[is_new].next(j)) {
+            if (ball.carrier != kItself && balls[j].carrier == ball.carrier) continue;
             const double distance = grid.distance(ball.x, balls[j].x);
             const double limit =
                 surfaces ? 0.99 * (balls[j].radius + ball.radius) : balls[j].radius;

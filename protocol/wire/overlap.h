@@ -16,6 +16,7 @@ struct Ball {
   Vec3 x{};             ///< [m]
   double radius = 0.0;  ///< [m]
   bool is_new = true;
+  std::int64_t carrier = kItself;  ///< two of one may overlap
 };
 
 struct Overlap {

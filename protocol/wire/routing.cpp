@@ -2,6 +2,11 @@
 #include "protocol/wire/routing.h"
 
 #include <cmath>
+#include <unordered_map>
+
+#include "protocol/wire/clumps.h"
+#include "protocol/wire/errors.h"
+#include "protocol/wire/text.h"
 
 namespace protocol {
 
@@ -25,6 +30,26 @@ bool astray(const Hello& fluid, const Vec3& x) {
     if (!fluid.periodic[k] && (x[k] < lo - length || x[k] > hi + length)) return true;
   }
   return false;
+}
+
+std::vector<std::size_t> routed_by(std::span<const Shape> shapes) {
+  std::vector<std::size_t> by(shapes.size());
+  std::unordered_map<std::int64_t, std::size_t> carriers;
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    if (!is_part(shapes[i])) carriers.emplace(shapes[i].id, i);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    by[i] = i;
+    if (!is_part(shapes[i])) continue;
+    const auto carrier = carriers.find(shapes[i].carrier);
+    if (carrier == carriers.end())
+      throw ProtocolError(
+          format("particle {} is a sphere of clump {}, which this rank does not send: the rank "
+                 "that sends a clump sends all its spheres",
+                 shapes[i].id, shapes[i].carrier),
+          kBadInput);
+    by[i] = carrier->second;
+  }
+  return by;
 }
 
 }  // namespace protocol

@@ -60,6 +60,7 @@ class FluidSession {
   Channel& channel_;
   Hello mine_, partner_;
   ArrivalCheck check_;
+  ClumpCheck clumps_;
   double lightest_ = 1.0;  // mass of the particles [kg]
   double timeout_, waited_ = 0.0;
   std::int64_t next_interval_;

@@ -87,8 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "fix              move all nve/sphere",
                     "create_atoms 1 single 0.0116 0.04 0.0 units box\nset type 1 diameter "
                     "${diameter_max} density ${disc_density}\nfix move all rigid single",
-                    {"fix move rigid joins spheres that overlap: particles 1 and 2",
-                     "count buoyancy and the fluid inside once a sphere"}},
+                    {"density", "scene's particles.density says 1250 … 1250", "kg in"}},
         ScriptFault{
             "heap",
             kRun,
@@ -246,10 +245,10 @@ TEST(OneSidedWalls, AMeshOfTheFluidAloneIsNamed) {
                    "fluid only"});
 }
 
-TEST(Clumps, OfMultisphereAreRefusedByName) {
-  expect_both_refuse(
-      Spheres().run(kSides + kFloor, "fix move all multisphere"),
-      {"fix move multisphere moves particles that are no single spheres", "liggghts | error | "});
+TEST(Shapes, ThatAreNoSpheresAreRefusedByName) {
+  expect_both_refuse(Spheres().run(kSides + kFloor, "fix move all multisphere/nointegration"),
+                     {"fix move multisphere/nointegration has particles that are neither spheres",
+                      "liggghts | error | "});
 }
 
 // ---- any engine
@@ -278,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "diameters"},
         std::pair{"grow", "particle 4: diameter 0.005 m at interval 3"},
         std::pair{"dense", "particle 4: density 2500 kg/m³ at interval 3"},
-        std::pair{"clump", "particle 4 belongs to body 1 (interval 3)"}),
+        std::pair{"clump", "particle 4 is a sphere of clump 1, but has a mass of "}),
     [](const auto& info) { return info.param.first; });
 
 // ---- an id that passes to another particle

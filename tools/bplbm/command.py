@@ -14,6 +14,7 @@ MODULES = {
     "compare": ("bplbm.compare", "shows the results of runs side by side"),
     "draw_setup": ("bplbm.setup_drawing", "draws what the files of a scene describe"),
     "make_packing": ("bplbm.packing", "makes a dense packing of grains"),
+    "make_clump": ("bplbm.clump", "fills a closed surface with spheres"),
     "report": ("bplbm.report.command", "speed against error of every choice, and the stability of hard cases"),
 }
 OWN = {"check": "looks at a scene without running it: grid, steps, numbers, what is on, the time to expect",

@@ -11,11 +11,13 @@
 README.md beside this package has a whole engine; protocol/README.md has the wire itself.
 """
 
+from .clump import Clump, union_moments
 from .errors import FluidFault, FluidLeft, Refused, SolidError, TimedOut
 from .records import BOND, LOAD, SHAPE, STATE, ball, disc, sphere
 from .report import BondCounts, Report
 from .session import Solid
 
-__all__ = ["BOND", "LOAD", "SHAPE", "STATE", "BondCounts", "FluidFault", "FluidLeft", "Refused", "Report", "Solid",
-           "SolidError", "TimedOut", "ball", "disc", "sphere"]
+__all__ = ["BOND", "LOAD", "SHAPE", "STATE", "BondCounts", "Clump", "FluidFault", "FluidLeft", "Refused", "Report", "Solid",
+           "SolidError", "TimedOut", "ball", "disc", "sphere",
+           "union_moments"]
 __version__ = "0.1.0"

@@ -10,7 +10,8 @@ STATE = np.dtype([("id", "i8"), ("x", "f8", 3), ("v", "f8", 3), ("omega", "f8", 
 
 SHAPE = np.dtype([("id", "i8"), ("radius", "f8"), ("mass", "f8"), ("inertia", "f8"), ("type", "i8"), ("epoch", "i8"),
                   ("carrier", "i8"), ("volume", "f8")])
-"""What rarely changes [m, kg, kg m², m³]; type begins at 1, carrier is -1 (itself), volume 0 is that of its ball."""
+"""What rarely changes [m, kg, kg m², m³]; type begins at 1, carrier is -1 (itself), volume 0 is that of its ball. A clump:
+see `Clump`."""
 
 LOAD = np.dtype([("id", "i8"), ("force", "f8", 3), ("torque", "f8", 3)])
 """Mean hydrodynamic load on a particle over an interval, about its centre [N, N m]."""

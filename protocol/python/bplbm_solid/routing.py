@@ -21,6 +21,25 @@ def touching(fluid: Handshake, states: np.ndarray, radius: np.ndarray) -> np.nda
     return np.flatnonzero(there)
 
 
+def routed_by(shapes: np.ndarray) -> np.ndarray:
+    """Of each record the one whose ball says which fluid ranks get it: itself, or its clump's carrier.
+
+    @throws SolidError  a sphere of a clump comes without its carrier"""
+    by = np.arange(len(shapes))
+    parts = np.flatnonzero((shapes["carrier"] != -1) & (shapes["carrier"] != shapes["id"]))
+    if not len(parts):
+        return by
+    order = np.argsort(shapes["id"], kind="stable")
+    place = np.searchsorted(shapes["id"], shapes["carrier"][parts], sorter=order).clip(max=len(shapes) - 1)
+    by[parts] = order[place]
+    lost = parts[shapes["id"][by[parts]] != shapes["carrier"][parts]]
+    if len(lost):
+        s = shapes[lost[0]]
+        raise SolidError(f"particle {s['id']} is a sphere of clump {s['carrier']}, which this rank does not send: the rank that "
+                         "sends a clump sends all its spheres", BAD_INPUT)
+    return by
+
+
 def refuse_astray(fluid: Handshake, states: np.ndarray, interval: int) -> None:
     """@throws SolidError  where a particle is as far outside of the box as that is long"""
     for k in (k for k in range(fluid.dimension) if not fluid.periodic[k]):

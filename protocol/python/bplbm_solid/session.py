@@ -171,9 +171,9 @@ class Solid:
         head = self.interval, self.interval * self._duration, self.flags & (frames.LAST | frames.CHECKPOINT)
         said = None if report is None else report.encoded(self.bonds_wanted)
         routing.refuse_astray(self.fluid, states, self.interval)
-        sent = []
+        by, sent = routing.routed_by(shapes), []
         for rank, fluid in enumerate(self._fluids):
-            there = routing.touching(fluid, states, shapes["radius"])
+            there = routing.touching(fluid, states[by], shapes["radius"][by])
             sent.append(there)
             self._channel.send(rank, frames.STATES, frames.encode_states(
                 *head, self._setting, states[there], self._told[rank].news(shapes[there]), said if rank == 0 else None),

@@ -129,7 +129,7 @@ TEST(CoverMap, SolidsShareTheForceOfACellByTheirFractions) {
         for (int a = 0; a < 2; ++a) whole[a] += force[a][lane];
         by_hand += force[0][lane] * fraction_of(first->cover[lane]) * all.scale[lane];
       }
-      CoverMap::split<2>(*first, all.scale, force);
+      cover.split<2>(*first, all.scale, force);
       EXPECT_NEAR(first->sums[0], by_hand, 1e-14);
       for (auto* block = first; block; block = block->next)
         for (int a = 0; a < 2; ++a) parts[a] += block->sums[a];

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "protocol/transport/memory_channel.h"
+#include "protocol/wire/ball_union.h"
 #include "protocol/wire/overlap.h"
 #include "protocol/wire/session.h"
 #include "tests/unit/protocol/samples.h"
@@ -166,7 +167,12 @@ std::vector<Change> later_changes() {
          b.shapes = {shape(5)};
          b.shapes[0].carrier = 1;
        },
-       {"particle 5 belongs to body 1", "clumps"}},
+       {"particle 5 is a sphere of clump 1", "has a mass of 0.006135923 kg", "says 0"}},
+      {"sphere_alone",
+       [](StateBatch& b) {
+         b.shapes = {{5, kRadius, 0.0, 0.0, 1, 0, 1}};
+       },
+       {"particle 5 is a sphere of clump 1, which did not come with it at interval 1"}},
       {"type",
        [](StateBatch& b) {
          b.shapes = {shape(5)};
@@ -197,6 +203,83 @@ std::vector<Change> later_changes() {
 }
 INSTANTIATE_TEST_SUITE_P(Arrival, LaterChange, testing::ValuesIn(later_changes()),
                          [](const auto& info) { return std::string(info.param.name); });
+
+// ---- clumps -------------------------------------------------------------------------------------
+
+/// Two discs of a clump, 1.5 radii apart, with the ids 6 and 7; the clump is 9.
+StateBatch clump() {
+  constexpr double half = 0.75 * kRadius;
+  StateBatch b = first();
+  b.states = {state(6, 0.01 - half), state(7, 0.01 + half), state(9, 0.01)};
+  const Ball balls[] = {{6, {-half, 0.0, 0.0}, kRadius}, {7, {half, 0.0, 0.0}, kRadius}};
+  const Hello hello = test::sample_hello(Role::Fluid);
+  const double volume = moments_of_union(balls, 2, hello.depth).volume, mass = 1250.0 * volume;
+  b.shapes = {{6, kRadius, 0.0, 0.0, 1, 0, 9},
+              {7, kRadius, 0.0, 0.0, 1, 0, 9},
+              {9, kRadius + half, mass, mass * kRadius * kRadius, 1, 0, kItself, volume}};
+  return b;
+}
+
+TEST(Arrival, AClumpComesWithSpheresThatOverlap) {
+  const Seen seen = arrive({clump()});
+  EXPECT_EQ(seen.refusal, "");
+  ASSERT_EQ(seen.arrivals.size(), 1U);
+  EXPECT_EQ(seen.arrivals[0].particles.size(), 3U);
+}
+
+struct ClumpFault {
+  const char* name;
+  std::function<void(StateBatch&)> change;
+  std::vector<std::string> words;
+};
+
+TEST(Arrival, WhatIsWrongWithAClumpIsNamed) {
+  const ClumpFault faults[] = {
+      {"volume once a sphere",
+       [](StateBatch& b) { b.shapes[2].volume *= 1.3, b.shapes[2].mass *= 1.3; },
+       {"clump 9: volume", "its 2 spheres fill", "ntry"}},
+      {"no volume",
+       [](StateBatch& b) { b.shapes[2].volume = 0.0; },
+       {"clump 9: volume 0 m³", "union of its spheres"}},
+      {"density",
+       [](StateBatch& b) { b.shapes[2].mass *= 2.0; },
+       {"particle 9: density 2500 kg/m³", "1250 … 1250"}},
+      {"sphere too far",
+       [](StateBatch& b) { b.states[1].x[1] += kRadius; },
+       {"clump 9: its sphere 7 reaches", "its radius is"}},
+      {"chain",
+       [](StateBatch& b) { b.shapes[1].carrier = 6; },
+       {"particle 7 is a sphere of 6, which is a sphere of 9 itself"}},
+      {"sphere of another size",
+       [](StateBatch& b) { b.shapes[0].radius *= 0.5; },
+       {"particle 6: diameter", "particles.diameter"}},
+      {"another particle in it",
+       [](StateBatch& b) {
+         b.states.insert(b.states.begin(), state(5, 0.01 + kRadius));
+         b.shapes.insert(b.shapes.begin(), shape(5));
+       },
+       {"particles", "overlap", "5"}},
+  };
+  for (const ClumpFault& fault : faults) {
+    StateBatch batch = clump();
+    fault.change(batch);
+    SCOPED_TRACE(fault.name);
+    expect_refusal(arrive({batch}), fault.words, 0);
+  }
+}
+
+TEST(Arrival, AClumpThatComesApartIsNamed) {
+  StateBatch later = clump(), apart = clump();
+  later.head.interval = apart.head.interval = 1;
+  later.shapes.clear();
+  EXPECT_EQ(arrive({clump(), later}).refusal, "");
+  StateBatch bent = later;
+  bent.states[1].x[1] += 0.8 * kRadius;
+  expect_refusal(arrive({clump(), bent}), {"clump 9: its sphere 7 reaches", "interval 1"}, 1);
+  apart.states.erase(apart.states.begin(), apart.states.begin() + 2);
+  apart.shapes.clear();
+  expect_refusal(arrive({clump(), apart}), {"clump 9 came without its spheres at interval 1"}, 1);
+}
 
 TEST(Arrival, ARadiusLargerThanTheBoxIsNamed) {
   StateBatch huge = first();

@@ -170,6 +170,50 @@ class Shapes(unittest.TestCase):
         self.assertEqual((ball["id"], ball["epoch"], ball["carrier"]), (4, 7, -1))
 
 
+class Clumps(unittest.TestCase):
+    def test_a_union_has_the_volume_of_two_balls_less_their_lens(self):
+        for apart in (0.3, 1.0, 2.0):
+            n = np.array([0.6, 0.64, 0.48]) * apart / 2
+            cap = 1 - apart / 2
+            volume, centroid, second = bplbm_solid.union_moments([-n, n], [1.0, 1.0])
+            self.assertAlmostEqual(volume / (8 / 3 * np.pi - 2 * np.pi * cap**2 * (3 - cap) / 3), 1, delta=1e-4)
+            np.testing.assert_allclose(centroid, 0, atol=1e-4)
+            axes = np.linalg.eigh(second)[1]
+            self.assertAlmostEqual(abs(axes[:, -1] @ n) / np.linalg.norm(n), 1, delta=1e-4)  # longest along the pair
+            area = bplbm_solid.union_moments([[-apart / 2, 0, 0], [apart / 2, 0, 0]], [1.0, 1.0], 2, 0.5)[0]
+            chord = 2 * math.acos(apart / 2) - apart / 2 * math.sqrt(4 - apart**2)
+            self.assertAlmostEqual(area / (0.5 * (2 * np.pi - chord)), 1, delta=1e-4)
+
+    def test_its_records_are_a_carrier_and_spheres_that_name_it(self):
+        clump = bplbm_solid.Clump(7, [[0, 0, 0], [0.1, 0, 0]], [0.1, 0.08], 1500.0, spheres=[8, 9])
+        clump.x, clump.v, clump.omega = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0, 0]), np.array([0, 0, 2.0])
+        states, shapes = clump.states, clump.shapes
+        self.assertEqual(list(shapes["carrier"]), [-1, 7, 7])
+        self.assertEqual(list(shapes["mass"][1:]), [0, 0])
+        self.assertAlmostEqual(shapes["mass"][0] / shapes["volume"][0], 1500.0)
+        arm = states["x"][2] - states["x"][0]
+        np.testing.assert_allclose(states["v"][2], clump.v + np.cross(clump.omega, arm))
+        self.assertAlmostEqual(shapes["radius"][0], max(np.linalg.norm(states["x"][i] - clump.x) + shapes["radius"][i]
+                                                        for i in (1, 2)))
+
+    def test_left_alone_it_keeps_its_angular_momentum(self):
+        clump = bplbm_solid.Clump(1, [[0, 0, 0], [0.6, 0.2, 0], [0, 0.7, 0.3]], [0.5, 0.4, 0.3], 1.0, spheres=[2, 3, 4])
+        clump.omega = np.array([1.0, 0.5, 0.2])
+        momentum = clump.turn @ clump.inertia @ clump.turn.T @ clump.omega
+        for _ in range(500):
+            clump.move(np.zeros(3), np.zeros(3), 0.01)
+        np.testing.assert_allclose(clump.turn @ clump.inertia @ clump.turn.T @ clump.omega, momentum, rtol=1e-9)
+
+    def test_spheres_go_where_their_carrier_goes(self):
+        clump = bplbm_solid.Clump(1, [[0, 0, 0], [0.3, 0, 0]], [0.15, 0.15], 1.0, spheres=[2, 3], dimension=2)
+        clump.x = np.array([0.7, 1.0, 0.0])  # a sphere of it is beyond the subdomain, at x > 0.5 + 0.15 + 0.01
+        by = routing.routed_by(clump.shapes)
+        there = routing.touching(handshake(), clump.states[by], clump.shapes["radius"][by])
+        self.assertEqual(list(there), [0, 1, 2])
+        with self.assertRaisesRegex(bplbm_solid.SolidError, "sphere of clump 1, which this rank does not send"):
+            routing.routed_by(clump.shapes[1:])
+
+
 class Readme(unittest.TestCase):
     def test_its_engine_lets_a_disc_fall(self):
         code = re.search(r"^```python\n(.*?)^```$", (PACKAGE / "README.md").read_text(), re.M | re.S).group(1)

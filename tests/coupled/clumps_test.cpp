@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Clumps of LIGGGHTS in the fluid: those of fix multisphere and of fix rigid.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/coupled_job.h"
+
+namespace {
+
+using test::JobResult;
+using test::kLbm;
+using test::kLiggghts;
+using test::mpirun;
+
+constexpr const char* kScene = R"(title = "clump"
+[box]
+size = [0.012, 0.012, 0.018]
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-5
+gravity = [0.0, 0.0, -9.81]
+velocity_scale = 0.1
+[particles]
+diameter = 0.003
+density = 1000.0
+contact_stiffness = 1.0e3
+[numerics]
+cell = 0.0005
+[coupling]
+timeout = 30.0
+[output]
+probe_every = 0.005
+[run]
+end_time = 0.05
+)";
+
+constexpr const char* kScript = R"(atom_style granular
+atom_modify map array sort 0 0
+boundary ${boundary_x} ${boundary_y} ${boundary_z}
+newton off
+communicate single vel yes
+processors PROCESSORS
+units si
+region domain block ${x_lo} ${x_hi} ${y_lo} ${y_hi} ${z_lo} ${z_hi} units box
+if "${restart} == 1" then "read_restart ${restart_file}" else "create_box 1 domain"
+neighbor 0.0005 bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype 5.e6
+fix m2 all property/global poissonsRatio peratomtype 0.45
+fix m3 all property/global coefficientRestitution peratomtypepair 1 0.3
+fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
+pair_style gran model hertz tangential history
+pair_coeff * *
+timestep ${solid_step}
+fix x all wall/gran model hertz tangential history primitive type 1 xplane ${x_lo}
+fix X all wall/gran model hertz tangential history primitive type 1 xplane ${x_hi}
+fix y all wall/gran model hertz tangential history primitive type 1 yplane ${y_lo}
+fix Y all wall/gran model hertz tangential history primitive type 1 yplane ${y_hi}
+fix z all wall/gran model hertz tangential history primitive type 1 zplane ${z_lo}
+fix Z all wall/gran model hertz tangential history primitive type 1 zplane ${z_hi}
+BODIES
+if "${restart} == 0" then "run 1"
+fix weight all gravity ${gravity} vector 0.0 0.0 -1.0
+fix fluid all lbm/couple every ${substeps}
+run ${solid_steps_total}
+)";
+
+/// Two spheres 1 mm apart, one body of fix multisphere.
+std::string multisphere(const std::string& density, const std::string& velocity = "0. 0. 0.") {
+  return "fix one all particletemplate/multisphere 15485863 atom_type 1 density constant " +
+         density +
+         " nspheres 2 ntry 1000000 spheres file two.txt scale 0.001 type 1\n"
+         "fix all_of all particledistribution/discrete 32452843 1 one 1.0\n"
+         "region middle block 0.0055 0.0065 0.0055 0.0065 0.0105 0.0115 units box\n"
+         "if \"${restart} == 0\" then \"fix put all insert/pack seed 32452867 distributiontemplate "
+         "all_of insert_every once overlapcheck yes all_in no vel constant " +
+         velocity +
+         " region middle particles_in_region 1\"\n"
+         "fix move all multisphere";
+}
+
+class Clumps : public testing::Test {
+ protected:
+  Clumps() { folder_.write("two.txt", "-0.5 0 0 1.5\n0.5 0 0 1.5\n"); }
+
+  JobResult run(const std::string& bodies, const std::string& scene = kScene, int fluids = 1,
+                int solids = 1, const std::string& options = "--out out") {
+    folder_.write("scene.toml", scene);
+    std::string script = test::replaced(kScript, "BODIES", bodies);
+    script = test::replaced(script, "PROCESSORS", solids == 1 ? "1 1 1" : "1 1 2");
+    folder_.write("in.liggghts", script);
+    return test::run(mpirun({kLbm + " --progress none " + options, fluids},
+                            {kLiggghts + " -in in.liggghts", solids}),
+                     folder_.path(), 100.0);
+  }
+
+  using Row = std::array<double, 17>;  // of probes.csv in three dimensions
+  /// Rows of a particle, of the clump where the id is below −1.
+  std::vector<Row> rows(const std::string& out, bool clump) const {
+    std::ifstream file(folder_.path() + "/" + out + "/probes.csv");
+    std::vector<Row> all;
+    std::string line, number;
+    std::getline(file, line);
+    while (std::getline(file, line)) {
+      std::istringstream numbers(line);
+      Row row{};
+      for (double& value : row) {
+        std::getline(numbers, number, ',');
+        value = std::stod(number);
+      }
+      if ((row[1] < -1.0) == clump) all.push_back(row);
+    }
+    return all;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Clumps, OfMultisphereThatAreNeutralStayWhereTheyAre) {
+  // Its density is the fluid's, and its volume that of its template: weight and buoyancy are equal
+  // to round-off. Counted once a sphere it rose at 7 cm/s.
+  const JobResult job = run(multisphere("1000"));
+  test::expect_end(job, 100.0, 0, {});
+  const auto path = rows("out", true);
+  ASSERT_GT(path.size(), 5U);
+  for (int axis = 2; axis < 5; ++axis)
+    EXPECT_NEAR(path.back()[axis], path.front()[axis], 1e-6 * 0.003);
+  EXPECT_EQ(rows("out", false).size(), 2 * path.size());
+}
+
+std::string heavy(double density) {
+  return test::replaced(kScene, "density = 1000.0\ncontact",
+                        "density = " + std::to_string(density) + "\ncontact");
+}
+
+/// Rows of the clump of two runs are equal to round-off, summed in another order.
+void expect_alike(const std::vector<std::array<double, 17>>& one,
+                  const std::vector<std::array<double, 17>>& other) {
+  ASSERT_EQ(one.size(), other.size());
+  ASSERT_GT(one.size(), 5U);
+  const double scales[17] = {1, 1, 1e-3, 1e-3, 1e-3, 0.1,  0.1,  0.1, 1,
+                             1, 1, 1e-4, 1e-4, 1e-4, 1e-7, 1e-7, 1e-7};
+  for (std::size_t k = 0; k < one.size(); ++k)
+    for (std::size_t c = 0; c < 17; ++c)
+      EXPECT_NEAR(one[k][c], other[k][c], 1e-8 * scales[c]) << "row " << k << ", column " << c;
+}
+
+TEST_F(Clumps, Slow_OfMultisphereFallAlikeOnAnyNumberOfRanksOfTheFluid) {
+  // across the border of the two ranks of both programs, at 9 mm
+  test::expect_end(run(multisphere("2500"), heavy(2500), 1, 2, "--out one"), 100.0, 0, {});
+  test::expect_end(run(multisphere("2500"), heavy(2500), 2, 2, "--out two"), 100.0, 0, {});
+  const auto one = rows("one", true);
+  expect_alike(one, rows("two", true));
+  EXPECT_GT(one.front()[4], 0.0095);
+  EXPECT_LT(one.back()[4], 0.0088);
+}
+
+/// Two spheres that overlap, joined by fix rigid, which counts both whole: their density is that of
+/// the union, 20.944 mm³, over the sum, 28.274 mm³.
+const std::string kRigid =
+    "if \"${restart} == 0\" then \"create_atoms 1 single 0.0055 0.006 0.011 units box\" "
+    "\"create_atoms 1 single 0.0065 0.006 0.011 units box\" \"set type 1 diameter 0.003 density "
+    "1851.86\"\nneigh_modify exclude group all all\nfix move all rigid single";
+
+TEST_F(Clumps, Slow_OfRigidFallAlikeOnAnyNumberOfRanks) {
+  const std::string scene =
+      test::replaced(heavy(2500), "density = 2500.000000", "density = [2490.0, 2510.0]");
+  test::expect_end(run(kRigid, scene, 1, 1, "--out one"), 100.0, 0, {});
+  test::expect_end(run(kRigid, scene, 2, 2, "--out two"), 100.0, 0, {});
+  const auto one = rows("one", true);
+  expect_alike(one, rows("two", true));
+  EXPECT_LT(one.back()[4], 0.0090);
+}
+
+TEST_F(Clumps, OfRigidThatLieInSeveralRanksFallAlike) {
+  // one that reaches into the cells and the particles of both ranks of both programs, for 10 ms
+  std::string scene =
+      test::replaced(heavy(2500), "density = 2500.000000", "density = [2490.0, 2510.0]");
+  scene = test::replaced(scene, "end_time = 0.05", "end_time = 0.01");
+  scene = test::replaced(scene, "probe_every = 0.005", "probe_every = 0.001");
+  const std::string bodies = test::replaced(kRigid, "0.006 0.011", "0.006 0.0092");
+  test::expect_end(run(bodies, scene, 1, 1, "--out one"), 100.0, 0, {});
+  test::expect_end(run(bodies, scene, 2, 2, "--out two"), 100.0, 0, {});
+  expect_alike(rows("one", true), rows("two", true));
+}
+
+/// m ΔU = Σ T F + m g t over any number of intervals, with one mass along all three axes, those of
+/// which no force is the load's impulse included: Verlet's half-steps of a load that changes from
+/// one interval to the next are made up for (ParticleCoupling).
+void expect_impulse(const std::vector<std::array<double, 17>>& path, double mass, double off) {
+  ASSERT_GT(path.size(), 20U);
+  const double interval = path[1][0] - path[0][0];
+  for (std::size_t k = 3; k < path.size(); ++k)
+    for (int a = 0; a < 3; ++a) {
+      const double weight = a == 2 ? -9.81 * mass : 0.0;
+      // a row has the state at its time and the load of the interval that begins there
+      EXPECT_NEAR(mass * (path[k][5 + a] - path[k - 1][5 + a]),
+                  interval * (path[k - 1][11 + a] + weight),
+                  off * interval * (std::abs(path[k - 1][11 + a]) + 9.81 * mass))
+          << "interval " << k << ", axis " << a;
+    }
+}
+
+TEST_F(Clumps, TakeTheImpulseOfTheirLoads) {
+  std::string scene = test::replaced(heavy(1500), "probe_every = 0.005\n", "");
+  scene = test::replaced(scene, "end_time = 0.05", "end_time = 0.01");
+  test::expect_end(run(multisphere("1500", "0.05 0.03 0.0"), scene, 1, 1, "--out of_multisphere"),
+                   100.0, 0, {});
+  // its mass is that of LIGGGHTS' samples: 0.3 % of what two balls less their lens have
+  expect_impulse(rows("of_multisphere", true), 1500.0 * 2.0944e-8, 0.003);
+  const std::string light = test::replaced(kRigid, "1851.86", "1111.12");
+  scene = test::replaced(scene, "density = 1500.000000", "density = [1490.0, 1510.0]");
+  test::expect_end(
+      run(light + "\nvelocity all set 0.05 0.03 0.0 units box", scene, 1, 1, "--out of_rigid"),
+      100.0, 0, {});
+  expect_impulse(rows("of_rigid", true), 1111.12 * 2.0 * 1.41371669e-8, 1e-6);
+}
+
+TEST_F(Clumps, OfMultisphereGoOnFromACheckpointAsTheRunThatWasNot) {
+  const std::string scene = heavy(2500) + "checkpoint_every = 0.01\n";
+  test::expect_end(run(multisphere("2500"), scene, 1, 1, "--out whole"), 100.0, 0, {});
+  test::expect_end(run(multisphere("2500"), scene, 1, 1, "--out cut --until 0.03"), 100.0, 0, {});
+  const JobResult job = run(multisphere("2500"), scene, 1, 1, "--out cut --restart");
+  test::expect_end(job, 100.0, 0, {});
+  EXPECT_EQ(test::read_file(folder_.path() + "/cut/probes.csv"),
+            test::read_file(folder_.path() + "/whole/probes.csv"));
+}
+
+TEST_F(Clumps, OfRigidRefuseCheckpointsWithTheReason) {
+  const std::string scene =
+      test::replaced(heavy(2500), "density = 2500.000000", "density = [2490.0, 2510.0]");
+  test::expect_end(run(kRigid, scene + "checkpoint_every = 0.01\n"), 30.0, 1,
+                   {"a fix rigid keeps nothing of its bodies in restart files"});
+}
+
+// ---- an engine without LIGGGHTS -----------------------------------------------------------------
+
+constexpr const char* kFlat = R"(title = "clumps of discs"
+[box]
+size = [0.02, 0.03]
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-5
+gravity = [0.0, -9.81]
+velocity_scale = 0.1
+[particles]
+diameter = 0.002
+density = 1500.0
+start = [[0.0098, 0.0152], [0.0041, 0.0221]]
+[particles.variables]
+clump = "-0.001,0,0,0.001:0,0.0002,0,0.001:0.001,0,0,0.001"
+[numerics]
+cell = 0.0002
+[coupling]
+substeps = 3
+timeout = 30.0
+[output]
+probe_every = 0.005
+[run]
+end_time = 0.04
+)";
+
+class ClumpEngine : public testing::Test {
+ protected:
+  JobResult run(const std::string& scene, int fluids, const std::string& out) {
+    folder_.write("scene.toml", scene);
+    const std::string engine =
+        "/usr/bin/python3 " BPLBM_SOURCE_DIR "/tools/engines/python/clump_engine.py";
+    return test::run(mpirun({kLbm + " --progress none --out " + out, fluids}, {engine}),
+                     folder_.path(), 100.0);
+  }
+  std::string probes(const std::string& out) const {
+    return test::read_file(folder_.path() + "/" + out + "/probes.csv");
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ClumpEngine, FallsAlikeOnOneAndTwoRanksOfTheFluid) {
+  test::expect_end(run(kFlat, 1, "one"), 100.0, 0, {});
+  test::expect_end(run(kFlat, 2, "two"), 100.0, 0, {});
+  std::istringstream one(probes("one")), two(probes("two"));
+  std::string a, b;
+  int rows = 0;
+  for (; std::getline(one, a) && std::getline(two, b); ++rows) {
+    std::istringstream left(a), right(b);
+    std::string x, y;
+    while (rows > 0 && std::getline(left, x, ',') && std::getline(right, y, ','))
+      EXPECT_NEAR(std::stod(x), std::stod(y), 1e-8 * std::max(1e-3, std::abs(std::stod(x)))) << a;
+  }
+  EXPECT_GT(rows, 50);  // of two clumps and their six discs
+}
+
+TEST_F(ClumpEngine, OfMarkersIsRefusedWithTheReason) {
+  const std::string scene = test::replaced(
+      kFlat, "cell = 0.0002", "cell = 0.0002\nscheme = \"implicit_immersed_boundary\"");
+  test::expect_end(run(scene, 1, "out"), 30.0, 2,
+                   {"numerics.scheme = implicit_immersed_boundary", "whose spheres overlap"});
+}
+
+}  // namespace
