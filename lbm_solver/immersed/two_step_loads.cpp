@@ -20,16 +20,15 @@ void TwoStepLoads::remember(std::span<const Body> bodies, std::span<const BodyLo
 
 std::vector<BodyLoad> TwoStepLoads::mean(std::span<const Body> bodies,
                                          std::span<const BodyLoad> raw, const Domain& domain,
-                                         const Block& cells, std::span<const double> lags) const {
+                                         const Block& cells) const {
   std::vector<BodyLoad> loads(raw.begin(), raw.end());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const auto found = before_.find(bodies[i].id);
     if (found == before_.end()) continue;
     const bool elsewhere = of_all_ranks_ && !holds(domain, cells, bodies[i].centre);
     const BodyLoad before = elsewhere ? BodyLoad{} : found->second;
-    const double lag = lags.empty() ? lag_ : lags[i];
-    loads[i].force += lag * (before.force - raw[i].force);
-    loads[i].torque += lag * (before.torque - raw[i].torque);
+    loads[i].force += lag_ * (before.force - raw[i].force);
+    loads[i].torque += lag_ * (before.torque - raw[i].torque);
   }
   return loads;
 }

@@ -22,11 +22,9 @@ class TwoStepLoads {
 
   /// What the sweep left on the bodies in the last step: what the next one needs of it.
   void remember(std::span<const Body> bodies, std::span<const BodyLoad> raw);
-  /// @param raw   loads of the last step; a body that was not there before has these
-  /// @param lags  of each body, where they have different ones
+  /// @param raw  loads of the last step; a body that was not there before has these
   std::vector<BodyLoad> mean(std::span<const Body> bodies, std::span<const BodyLoad> raw,
-                             const Domain& domain, const Block& cells,
-                             std::span<const double> lags = {}) const;
+                             const Domain& domain, const Block& cells) const;
 
   /// Loads of the step before, complete on rank 0; `load` wants them on every rank. Collective.
   Record save(const Decomposition& ranks) const;

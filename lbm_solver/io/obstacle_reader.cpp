@@ -230,6 +230,9 @@ void read_its_motion(TableReader& t, const std::string& scene_file, const BoxSce
   if (o.image)
     t.fail("motion", "is there for discs, spheres, blocks and meshes, not for images",
            "draw it as a mesh, or leave motion out");
+  if (o.mesh && o.mesh->hollow)
+    t.fail("hollow", "stands beside motion: the solid would reach to the sides of the box",
+           "give the surface a thickness, or both surfaces of the wall");
   if (!o.spin.isZero(0.0))
     t.fail("spin", "stands beside motion", "give motion = \"rotation\" and angular_velocity");
   if (o.block()) {

@@ -33,7 +33,8 @@ bool is_reserved_variable(const std::string& name) {
       "[xyz]_(lo|hi)|(boundary|walls)_[xyz]|dimension|depth|gravity(_[xyz])?|solid_step|substeps|"
       "solid_steps_total|coupling_timeout|restart|restart_file|checkpoint|(diameter|density)_(min|"
       "max)|"
-      "particle[0-9]+_[xyz]|mesh[0-9]+(_motion)?|disc[0-9]+_wall|contact_stiffness|scene_folder|out_folder");
+      "particle[0-9]+_[xyz]|mesh[0-9]+(_motion)?|disc[0-9]+_wall|contact_stiffness|scene_folder|"
+      "out_folder");
   return std::regex_match(name, ours);
 }
 

@@ -10,12 +10,6 @@
 #include "lbm_solver/immersed/resistance.h"
 
 namespace lbm {
-namespace {
-
-constexpr double kWallLag = 0.5;  // of cells that reflect all that arrives: the mean of two steps
-
-}  // namespace
-
 Fluid::Fluid(const Domain& domain, const KernelChoice& choice)
     : Fluid(Decomposition(domain), choice) {}
 
@@ -97,17 +91,15 @@ void Fluid::add(const Geometry& geometry) {
   Body& body = fixed_.emplace_back();
   body.id = static_cast<std::int64_t>(fixed_.size());
   body.centre = geometry.centre();
-  fixed_lags_.push_back(load_lag(choice_.solid_term, choice_.parameters.tau));
 }
 
-void Fluid::add(const MeshSolid& solid, PoseInTime pose, bool stays) {
+void Fluid::add(const MeshSolid& solid, PoseInTime pose, std::optional<double> drum) {
   BPLBM_EXPECT(cover_ != nullptr);
   cover_->add(std::make_unique<MovingShape>(
-      solid, radius_shift(choice_.solid_term, domain().dimension()), stays));
+      solid, radius_shift(choice_.solid_term, domain().dimension()), drum));
   Body& body = fixed_.emplace_back();
   body.id = static_cast<std::int64_t>(fixed_.size());
   movers_.push_back({fixed_.size() - 1, std::move(pose)});
-  fixed_lags_.push_back(stays ? kWallLag : load_lag(choice_.solid_term, choice_.parameters.tau));
   moved_to_ = -1;
 }
 
@@ -148,7 +140,7 @@ std::vector<BodyLoad> Fluid::loads() const {
 std::vector<BodyLoad> Fluid::fixed_loads() const {
   if (fixed_.empty()) return {};
   if (!two_steps_.on()) return cover_->fixed_loads();
-  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells(), fixed_lags_);
+  return fixed_two_steps_.mean(fixed_, cover_->fixed_loads(), domain(), cells());
 }
 
 /// One step's sweep where neighbours are other ranks; called by every thread of a parallel region.

@@ -62,9 +62,9 @@ class Fluid {
   /// @throws std::invalid_argument  see fill()
   void add(const Geometry& geometry);
   /// A mesh that moves as it is told; before bodies are placed.
-  /// @param stays  in its surface only: its poses have no shift and no angle
+  /// @param drum  it is the wall of a drum, whose load is that of the cells nearer to the pivot
   /// @throws std::invalid_argument  see fill()
-  void add(const MeshSolid& solid, PoseInTime pose, bool stays = false);
+  void add(const MeshSolid& solid, PoseInTime pose, std::optional<double> drum = {});
   /// Puts the meshes that move where they are at the present step; the next step does so too.
   void move_shapes();
 
@@ -192,8 +192,7 @@ class Fluid {
     PoseInTime pose;
   };
   std::vector<Mover> movers_;
-  std::vector<double> fixed_lags_;  // load_lag of each of fixed_
-  std::int64_t moved_to_ = -1;      // step whose poses the map has
+  std::int64_t moved_to_ = -1;  // step whose poses the map has
   TwoStepLoads two_steps_, fixed_two_steps_;
   bool loads_are_new_ = false;  // those in the map are of a step that two_steps_ does not know
   std::vector<std::unique_ptr<Patch>> patches_;

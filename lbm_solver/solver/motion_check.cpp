@@ -93,6 +93,18 @@ void check_motion(const Scene& s, const ObstacleScene& o, std::size_t number, Pl
         fmt::format("has a motion_table that ends at {:.4g} s, the run at {:.4g} s: it stands "
                     "from then on",
                     m.times.back(), s.end_time));
+  for (int k = 0; k < s.box.dimension && o.drum(); ++k) {
+    const double wall = 0.5 * o.diameter + kDrumWall * plan.units.dx;
+    if (s.box.sides[k] == SideKind::Wall &&
+        (o.centre[k] - wall < s.box.origin[k] ||
+         o.centre[k] + wall > s.box.origin[k] + s.box.size[k])) {
+      warn(
+          fmt::format("is a drum, whose wall of {} cells reaches the sides of the box and rubs "
+                      "there: leave {} cells around it",
+                      kDrumWall, kDrumWall + 1.0));
+      break;
+    }
+  }
   if (m.surface_only) {
     if (const double part = across_itself(o); part > kAcrossItself)
       warn(

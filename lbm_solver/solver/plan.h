@@ -61,6 +61,8 @@ inline Fluid make_fluid(const Scene& scene, const Plan& plan) {
   return make_fluid(scene, plan, Decomposition(plan.domain));
 }
 
+inline constexpr double kDrumWall = 10.0;  ///< cells that the wall of a drum is thick
+
 /// A motion's pose when a fluid step begins, in lattice units.
 Pose pose_in_cells(const Units& units, const MotionScene& motion, std::int64_t step);
 

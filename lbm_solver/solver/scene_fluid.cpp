@@ -126,13 +126,19 @@ MeshSolid solid_of(const Plan& p, const MeshScene& mesh) {
   return {std::make_shared<const TriangleMesh>(std::move(surface)), mesh.hollow};
 }
 
+/// The wall of a drum: a shell around the circle or sphere.
 MeshSolid drum_of(const Plan& p, const ObstacleScene& o) {
   const int d = p.domain.dimension();
-  TriangleMesh surface =
-      round_surface(p.units.to_lattice_position(o.centre), 0.5 * o.diameter / p.units.dx, d);
+  const Vec3 centre = p.units.to_lattice_position(o.centre);
+  const double radius = 0.5 * o.diameter / p.units.dx;
+  TriangleMesh surface = round_surface(centre, radius + kDrumWall, d);
+  const TriangleMesh inside = round_surface(centre, radius, d);
+  const auto n = static_cast<std::uint32_t>(surface.vertices.size());
+  surface.vertices.insert(surface.vertices.end(), inside.vertices.begin(), inside.vertices.end());
+  for (const auto& [a, b, c] : inside.triangles) surface.triangles.push_back({a + n, c + n, b + n});
   if (d == 2)
     for (Vec3& v : surface.vertices) v.z() = v.z() > 0.0 ? 2.0 : -1.0;
-  return {std::make_shared<const TriangleMesh>(std::move(surface)), true};
+  return {std::make_shared<const TriangleMesh>(std::move(surface)), false};
 }
 
 /// A voxel is a whole number of cells wide, or a cell of voxels.
@@ -191,14 +197,15 @@ Start start(const InitialScene& i, const Units& units, double x, double y) {
   return {0.0, {0.0, 0.0}};
 }
 
-/// @param motion  null: it stays where it is
-void add_shape(const Scene& s, const Plan& p, const Geometry& shape, const MotionScene* motion,
+void add_shape(const Scene& s, const Plan& p, const Geometry& shape, const ObstacleScene& o,
                Fluid& fluid) try {
-  if (!motion) return fluid.add(shape);
-  const auto pose = [units = p.units, motion = *motion](std::int64_t step) {
+  if (!o.motion) return fluid.add(shape);
+  const auto pose = [units = p.units, motion = *o.motion](std::int64_t step) {
     return pose_in_cells(units, motion, step);
   };
-  fluid.add(std::get<MeshSolid>(shape.shape), pose, motion->surface_only);
+  const std::optional<double> half_way =
+      o.drum() ? std::optional(0.5 * o.diameter / p.units.dx + 0.5 * kDrumWall) : std::nullopt;
+  fluid.add(std::get<MeshSolid>(shape.shape), pose, half_way);
 } catch (const std::invalid_argument& error) {
   throw InputError(s.file + ": obstacle.mesh", error.what(),
                    "turn it outwards, or leave the inner shell out");
@@ -263,7 +270,7 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
   const std::vector<Geometry> shapes = obstacle_shapes(s, p);
   std::size_t next = 0;
   for (const ObstacleScene& o : s.obstacles)
-    if (o.mesh || o.image) add_shape(s, p, shapes[next++], o.motion ? &*o.motion : nullptr, fluid);
+    if (!o.body() && !o.block()) add_shape(s, p, shapes[next++], o, fluid);
   if (p.scheme != SolidScheme::ImmersedMovingBoundary)
     fluid.use(make_scheme(p.scheme, p.domain, fluid.lattice(), s.numerics.spring_stiffness));
   const InTime force =

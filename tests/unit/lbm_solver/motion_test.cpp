@@ -13,6 +13,7 @@
 #include "lbm_solver/immersed/moving_shape.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "lbm_solver/io/script_variables.h"
+#include "lbm_solver/io/stl_file.h"
 #include "lbm_solver/solver/plan.h"
 #include "tests/support/job.h"
 #include "tests/support/meshes.h"
@@ -121,12 +122,21 @@ TEST_F(Motions, ThatAreWrongAreNamed) {
           {"obstacle.frequency = 1000 Hz has", "fluid steps a period"});
 }
 
+TEST_F(Motions, OfAHollowMeshAreRefused) {
+  write_stl(folder_.path() + "/mesh.stl",
+            test::box_mesh({0.004, 0.004, 0.004}, {0.016, 0.016, 0.016}));
+  refused(3, "mesh = \"mesh.stl\"\nhollow = true\nmotion = \"linear\"\nvelocity = [0.001, 0, 0]",
+          {"hollow stands beside motion", "give the surface a thickness"});
+}
+
 TEST_F(Motions, ThatHardlyAreMeantAreNamed) {
   warned(2, kDisc + "motion = \"linear\"\nvelocity = [0.01, 0.0]", "");
   warned(2, kDisc + "motion = \"linear\"\nvelocity = [0.018, 0.0]", "has left the box at 0.7");
   warned(2, kDisc + "motion = \"linear\"\nvelocity = [0.005, 0.0]\nsurface_only = true",
          "moves its surface only, which does not move along itself");
   warned(2, kDisc + "motion = \"rotation\"\nangular_velocity = 2\nsurface_only = true", "");
+  warned(2, kDisc + "hollow = true\nmotion = \"rotation\"\nangular_velocity = 2",
+         "the 1. obstacle is a drum, whose wall of 10 cells reaches the sides of the box");
   warned(2, kBlock + "motion = \"rotation\"\nangular_velocity = 2\nsurface_only = true",
          "fluid would pass through; leave surface_only out");
 }
@@ -247,7 +257,8 @@ TEST_F(Motions, ThatTheSolidCannotFollowAreRefusedInACoupledScene) {
   extra_ = "[particles]\ndiameter = 0.002\ndensity = 2000.0\n[coupling]\n";
   folder_.write("way.csv", "time,x,y\n0,0,0\n2,0.002,0.002\n");
   const std::string table = "motion = \"table\"\nmotion_table = \"way.csv\"";
-  refused(2, kBlock + table, {"moves as a table says", "fix move/mesh"});
+  refused(2, kBlock + table,
+          {"moves as a table says", "cannot follow: grains and fluid would meet two walls"});
   refused(2,
           kBlock +
               "motion = \"oscillation\"\namplitude = [0.001, 0]\nangular_amplitude = 0.1\n"
