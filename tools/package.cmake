@@ -14,7 +14,7 @@ install(DIRECTORY tools/bplbm DESTINATION ${share}/tools
   PATTERN __pycache__ EXCLUDE PATTERN checks EXCLUDE)
 install(DIRECTORY tools/engines/python DESTINATION ${share}/tools/engines PATTERN __pycache__ EXCLUDE)
 install(FILES tools/launch.py tools/pictures.py tools/trace_plot.py DESTINATION ${share}/tools)
-install(DIRECTORY cases DESTINATION ${share} PATTERN __pycache__ EXCLUDE PATTERN out EXCLUDE PATTERN "*.h5" EXCLUDE
+install(DIRECTORY cases DESTINATION ${share} PATTERN __pycache__ EXCLUDE PATTERN out EXCLUDE
   PATTERN log.liggghts EXCLUDE)
 install(DIRECTORY tests/hard DESTINATION ${share}/tests PATTERN __pycache__ EXCLUDE)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

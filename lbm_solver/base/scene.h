@@ -45,6 +45,20 @@ struct TimeTableScene {
   }
 };
 
+/// Factor of a velocity along a side, from a file: on a grid of its axes, the first of which runs
+/// first.
+struct ProfileScene {
+  std::array<std::vector<double>, 2> places;  ///< rising [m]; empty: the same all along this axis
+  std::vector<double> factors;                ///< empty: there is no profile
+
+  /// Largest |factor|, 1 without a profile.
+  double largest() const {
+    double most = factors.empty() ? 1.0 : 0.0;
+    for (const double f : factors) most = f > most ? f : -f > most ? -f : most;
+    return most;
+  }
+};
+
 /// Something else than no-slip at rest on a part of a side.
 struct BoundaryScene {
   enum class Kind { Velocity, Pressure, Outflow };
@@ -54,6 +68,7 @@ struct BoundaryScene {
   std::array<std::optional<double>, 2> from, to;
   Vec3 velocity;  ///< [m/s]; at the middle of a parabola
   bool parabolic = false;
+  ProfileScene profile;    ///< velocity × factor along the side
   double pressure = 0.0;   ///< against the reference [Pa]
   double ramp = 0.0;       ///< time in which the value comes up [s]
   double frequency = 0.0;  ///< value × cos(2 pi f t) [Hz]
@@ -116,6 +131,13 @@ struct ViscosityScene {
   double smagorinsky = 0.0;  ///< S_c of the eddy viscosity that comes on top; 0: none
 };
 
+/// A flow through a periodic box, for which a body force is found.
+struct FlowScene {
+  double rate = 0.0;  ///< [m³/s]
+  int axis = 0;
+  double ramp = 0.0;  ///< time in which it comes up [s]
+};
+
 struct FluidScene {
   double density = 1000.0;  ///< [kg/m^3]
   double viscosity = 1e-6;  ///< kinematic [m^2/s]; where it varies, at the typical shear rate
@@ -125,6 +147,7 @@ struct FluidScene {
   double body_force_ramp = 0;       ///< time in which it comes up [s]
   double body_force_frequency = 0;  ///< × cos(2 pi f t) [Hz]
   TimeTableScene body_force_table;  ///< × factor
+  std::optional<FlowScene> flow;    ///< absent: nothing is held
   double velocity_scale = 0;        ///< largest expected speed of fluid or particles [m/s]
 };
 
@@ -187,6 +210,7 @@ struct AverageScene {
 
 struct OutputScene {
   double fields_every = 0.0;  ///< [s]; 0: none
+  bool viscosity = false;     ///< among the fields
   double probe_every = 0.0;   ///< [s]; 0: every interval
   std::vector<Vec3> points;   ///< places where pressure and velocity are written [m]
   /// Numbers (ids) of the particles that have rows in the table of probes; empty: all.

@@ -14,4 +14,9 @@ constexpr bool is_high(SideName side) {
   return static_cast<int>(side) % 2 == 1;
 }
 
+/// The axes along a side, in the order x, y, z. @param k  0 or 1
+constexpr int axis_along(SideName side, int k) {
+  return k == 0 ? (axis_of(side) == 0 ? 1 : 0) : (axis_of(side) == 2 ? 1 : 2);
+}
+
 }  // namespace lbm

@@ -61,6 +61,42 @@ std::vector<Link> side_links(const Lattice& lattice, const Domain& domain, const
   return links;
 }
 
+namespace {
+
+/// Where a place lies in a rising list: the line below, and the part of the way to the next.
+struct Between {
+  std::size_t below = 0;
+  double part = 0.0;
+};
+Between between(const std::vector<double>& places, double at) {
+  const auto above = std::ranges::upper_bound(places, at);
+  if (above == places.begin()) return {};
+  const auto below = static_cast<std::size_t>(above - places.begin()) - 1;
+  if (above == places.end()) return {below, 0.0};
+  return {below, (at - places[below]) / (*above - places[below])};
+}
+
+}  // namespace
+
+double SideProfile::factor(const std::array<double, 2>& at) const {
+  const Between s = between(places[0], at[0]), t = between(places[1], at[1]);
+  const std::size_t row = std::max<std::size_t>(1, places[0].size());
+  const auto along = [&](std::size_t line) {
+    const double* first = &factors[line * row + s.below];
+    return s.part > 0.0 ? std::lerp(first[0], first[1], s.part) : first[0];
+  };
+  const double here = along(t.below);
+  return t.part > 0.0 ? std::lerp(here, along(t.below + 1), t.part) : here;
+}
+
+VelocityPatch::VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,
+                             const SideProfile& profile, const InTime& in_time)
+    : Patch(std::move(links)), in_time_(in_time) {
+  for (const Link& link : links_)
+    gain_.push_back(6.0 * lattice.w[link.q] * profile.factor(link.at) *
+                    velocity_of(lattice, link.q).dot(velocity));
+}
+
 VelocityPatch::VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,
                              bool parabolic, const Opening& o, const InTime& in_time)
     : Patch(std::move(links)), in_time_(in_time) {

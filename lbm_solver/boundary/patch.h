@@ -77,6 +77,15 @@ class Patch {
   std::vector<double> no_memory_;
 };
 
+/// Factor of a velocity along a side, on a grid of its two axes, the first of which runs first:
+/// straight between the places, beyond them as at the last.
+struct SideProfile {
+  std::array<std::vector<double>, 2> places;  ///< rising [cells of the box]; empty: the same
+  std::vector<double> factors;
+
+  double factor(const std::array<double, 2>& at) const;
+};
+
 /// A wall or inlet of given velocity: f_q = f_-q* + 6 w_q c_q·u(s) [Ladd1994].
 class VelocityPatch final : public Patch {
  public:
@@ -86,6 +95,9 @@ class VelocityPatch final : public Patch {
   ///                    else uniform
   VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,
                 bool parabolic, const Opening& opening, const InTime& in_time);
+  /// @param velocity  where the profile's factor is 1
+  VelocityPatch(const Lattice& lattice, std::vector<Link> links, const Vec3& velocity,
+                const SideProfile& profile, const InTime& in_time);
   void apply(const Sweep& sweep) override;
   /// What it added to the population bounced back along a link in the sweep of a step.
   double added(std::size_t link, std::int64_t step) const {

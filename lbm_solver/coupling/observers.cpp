@@ -85,6 +85,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
     field_times_.emplace(scene.output.fields_every, plan.interval());
   const bool flat = scene.box.dimension == 2;
   if (!scene.obstacles.empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
+  if (scene.fluid.flow) flow_.emplace(scene, plan, ranks, folder, keep);
   sensors_ = make_sensors(scene, plan, ranks, folder, keep);
   if (scene.output.average) average_.emplace(*scene.output.average, plan, ranks);
   if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);
@@ -100,7 +101,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
 
 std::int64_t Observers::next_look(std::int64_t state) const {
   std::int64_t next = (state / guard_every_ + 1) * guard_every_;
-  if (obstacles_ || !scene_.output.points.empty())
+  if (obstacles_ || flow_ || !scene_.output.points.empty())
     next = std::min(next, probe_times_.next(state + 1));
   if (field_times_) next = std::min(next, field_times_->next(state + 1));
   if (average_) next = std::min(next, average_->next(state + 1));
@@ -116,6 +117,7 @@ void Observers::at_state(std::int64_t state, Fluid& fluid, const Particles* part
     write_fields(time_of(state), fluid, particles);
   if (last || probe_times_.due(state)) {
     write_points(time_of(state), fluid);
+    if (flow_) flow_->write(time_of(state), fluid);
     if (obstacles_) obstacles_->write(time_of(state));
   }
   measure(state, fluid, last);
@@ -290,13 +292,17 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   frame.ny = plan_.domain.ny;
   frame.nz = plan_.domain.nz;
   const auto nx = static_cast<std::size_t>(n[0]);
-  std::vector<double> rho(nx), u[3];
+  std::vector<double> rho(nx), u[3], nu(nx);
   for (auto& component : u) component.assign(nx, 0.0);
+  const double viscosity = plan_.units.dx * plan_.units.dx / plan_.units.dt;
   std::vector<float> arrived;  // momentum [nz][ny][nx][3]
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y) {
       fluid.row(y, z, rho, {u[0], u[1], u[2]});
+      if (scene_.output.viscosity) row_viscosity(fluid, plan_.kernel.parameters, y, z, nu);
       for (int x = 0; x < n[0]; ++x) {
+        if (scene_.output.viscosity)
+          frame.viscosity.push_back(static_cast<float>(nu[x] * viscosity));
         if (fluid.cover())
           for (const double component : fluid.arrived_momentum(x, y, z))
             arrived.push_back(static_cast<float>(component));
@@ -316,6 +322,7 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   }
   frame.pressure = ranks_.gather(std::move(frame.pressure), 1);
   frame.velocity = ranks_.gather(std::move(frame.velocity), 3);
+  if (scene_.output.viscosity) frame.viscosity = ranks_.gather(std::move(frame.viscosity), 1);
   if (fluid.has_solids()) frame.solid_fraction = ranks_.gather(std::move(frame.solid_fraction), 1);
   if (particles) add_particles(*particles, frame);
   if (fields_) fields_->write(frame);
@@ -365,6 +372,7 @@ Summary Observers::summary(double wall_seconds) const {
                   {"box_x", scene_.box.size.x()},
                   {"box_y", scene_.box.size.y()},
                   {"velocity_scale", scene_.fluid.velocity_scale}};
+  if (flow_) flow_->describe(s.parameters);
   if (viscosity_) {
     s.parameters["share_at_rest_bound"] = viscosity_->at_rest_bound;
     s.parameters["share_at_shear_bound"] = viscosity_->at_shear_bound;

@@ -9,6 +9,7 @@
 
 #include "lbm_solver/coupling/diagnosis.h"
 #include "lbm_solver/coupling/field_average.h"
+#include "lbm_solver/coupling/held_flow.h"
 #include "lbm_solver/coupling/obstacle_loads.h"
 #include "lbm_solver/coupling/output_times.h"
 #include "lbm_solver/coupling/particles.h"
@@ -109,6 +110,7 @@ class Observers {
   std::optional<OutputTimes> field_times_;  // where fields are asked for
   std::optional<ProbeWriter> probes_;       // particles
   std::optional<CsvWriter> points_;
+  std::optional<HeldFlow> flow_;  // where one is held
   std::optional<ObstacleLoads> obstacles_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::optional<FieldAverage> average_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "lbm_solver/io/profile_reader.h"
 #include "lbm_solver/io/time_table_reader.h"
 
 namespace lbm {
@@ -57,6 +58,9 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::strin
   if (b.kind == Kind::Velocity) {
     b.velocity = t.vector("velocity", box.dimension, "[m/s]");
     b.parabolic = t.choice_or("profile", "uniform", {"uniform", "parabolic"}) == "parabolic";
+    b.profile = read_profile(t, b.side, box.dimension, scene_file);
+    if (b.parabolic && !b.profile.factors.empty())
+      t.fail("profile_table", "stands beside profile = \"parabolic\"", "give one of them");
     if (kind == "moving_wall" && b.velocity[axis] != 0.0)
       t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
   } else {
@@ -66,8 +70,13 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::strin
     b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
     b.table = read_time_table(t, "table", t.choice_or("repeat", "once", {"once", "periodic"}),
                               scene_file);
+    b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
+  } else {
+    for (const char* key : {"ramp", "frequency", "table", "repeat"})
+      if (t.has(key))
+        t.fail(key, "has no meaning for an outflow, whose pressure is steady",
+               "leave it out, or take kind = \"pressure\"");
   }
-  b.ramp = t.number_or("ramp", 0.0, Bounds::non_negative(), "s");
   t.finish();
   return b;
 }

@@ -135,7 +135,7 @@ bool FieldWriter::keep_frames(double until) {
       return axis < dimension_ ? static_cast<int>(cells[dimension_ - 1 - axis]) : 1;
     };
     entries_.push_back({time, along(0), along(1), along(2), rows("solid_fraction")[0] > 0,
-                        rows("particles")[0], bond_states(group)});
+                        rows("viscosity")[0] > 0, rows("particles")[0], bond_states(group)});
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
@@ -153,7 +153,13 @@ void FieldWriter::write(const FieldFrame& f) {
   for (int k = 0; f.flux && k < dimension_; ++k)
     protocol::hdf5::set_attribute(group, std::string("flux_") + "xyz"[k], (*f.flux)[k]);
   const std::size_t bonds = f.bond_state.size();
-  const Entry entry{f.time,      f.nx, f.ny, f.nz, !f.solid_fraction.empty(), f.particles.size(),
+  const Entry entry{f.time,
+                    f.nx,
+                    f.ny,
+                    f.nz,
+                    !f.solid_fraction.empty(),
+                    !f.viscosity.empty(),
+                    f.particles.size(),
                     f.bond_state};
   std::vector<hsize_t> cells;
   for (const auto n : shape(entry)) cells.push_back(n);
@@ -162,6 +168,7 @@ void FieldWriter::write(const FieldFrame& f) {
   write_array(group, "pressure", f.pressure, cells, "Pa");
   write_array(group, "velocity", f.velocity, vectors, "m/s");
   if (entry.solids) write_array(group, "solid_fraction", f.solid_fraction, cells, "1");
+  if (entry.viscosity) write_array(group, "viscosity", f.viscosity, cells, "m2/s");
   write_particles(group, f);
   if (bonds > 0) {
     const auto d = static_cast<hsize_t>(dimension_);
@@ -247,6 +254,7 @@ std::string FieldWriter::fluid_grid(std::size_t index) const {
   attribute("pressure", "Scalar", shape_text(e, 0));
   attribute("velocity", "Vector", shape_text(e, 0) + " 3");
   if (e.solids) attribute("solid_fraction", "Scalar", shape_text(e, 0));
+  if (e.viscosity) attribute("viscosity", "Scalar", shape_text(e, 0));
   return out + "</Grid>\n";
 }
 

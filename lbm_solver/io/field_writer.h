@@ -19,6 +19,7 @@ struct FieldFrame {
   std::vector<float> pressure;        ///< [nz][ny][nx], against rest and hydrostatic [Pa]
   std::vector<float> velocity;        ///< [nz][ny][nx][3] [m/s]
   std::vector<float> solid_fraction;  ///< [nz][ny][nx]; empty without solids
+  std::vector<float> viscosity;       ///< [nz][ny][nx], kinematic [m²/s]; empty: not asked for
   /// Mean over the box of the momentum that has arrived, over the density at rest [m/s]: in steady
   /// flow the flux through every face of the box, covered cells too, under every solid term.
   std::optional<Vec3> flux;
@@ -56,7 +57,7 @@ class FieldWriter {
   struct Entry {
     double time;
     int nx, ny, nz;
-    bool solids;
+    bool solids, viscosity;
     std::size_t particles;
     std::vector<double> bonds;  // their states
   };

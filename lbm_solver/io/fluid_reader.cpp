@@ -66,6 +66,22 @@ ViscosityScene read_viscosity(TableReader t) {
   return v;
 }
 
+std::optional<FlowScene> read_flow(TableReader& t, int d) {
+  std::vector<std::string> axes{"x", "y", "z"};
+  axes.resize(d);
+  FlowScene flow;
+  const auto rate = t.optional_number("flow_rate", {}, "m³/s");
+  flow.axis = t.choice_or("flow_axis", "x", axes)[0] - 'x';
+  flow.ramp = t.number_or("flow_ramp", 0.0, Bounds::non_negative(), "s");
+  if (!rate) {
+    for (const char* key : {"flow_axis", "flow_ramp"})
+      if (t.has(key)) t.fail(key, "has no meaning without flow_rate", "leave it out");
+    return {};
+  }
+  flow.rate = *rate;
+  return flow;
+}
+
 }  // namespace
 
 FluidScene read_fluid(TableReader t, int d, const std::string& scene_file) {
@@ -88,6 +104,7 @@ FluidScene read_fluid(TableReader t, int d, const std::string& scene_file) {
   fluid.body_force_table =
       read_time_table(t, "body_force_table",
                       t.choice_or("body_force_repeat", "once", {"once", "periodic"}), scene_file);
+  fluid.flow = read_flow(t, d);
   for (const char* key : {"body_force_frequency", "body_force_table"})
     if (t.has(key) && fluid.body_force.norm() == 0.0)
       t.fail(key, "stands beside a body_force of zero", "give body_force, or leave it out");

@@ -84,6 +84,7 @@ OutputScene read_output(TableReader& root, const BoxScene& box) {
   OutputScene output;
   TableReader t = root.optional_table("output");
   output.fields_every = t.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
+  output.viscosity = t.flag_or("viscosity", false);
   output.probe_every = t.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
   output.points = t.vectors_or_none("points", box.dimension, "[m]");
   output.probe_particles = read_probe_particles(t);

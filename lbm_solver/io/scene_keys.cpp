@@ -37,6 +37,7 @@ numerics.cell = 0.1
 run.end_time = 1
 boundary = [{side = "front", kind = "outflow", from = [0, 0], to = [1, 1]}]
 obstacle = [{centre = [0, 0, 0], diameter = 1}]
+sensor = [{name = "a", kind = "plane", axis = "z", at = 0}, {name = "b", kind = "side", side = "front"}]
 )",
     R"(
 box.size = [1, 1]
@@ -110,6 +111,12 @@ constexpr Meaning kMeanings[] = {
     {"fluid.body_force_table",
      "The body force is multiplied by a factor over time, from a file as boundary.table."},
     {"fluid.body_force_repeat", "periodic: the table begins anew after its last line."},
+    {"fluid.flow_rate",
+     "Flow through a periodic box, of fluid and solids, for which a body force is found; flow.csv "
+     "has "
+     "both (boundaries.md)."},
+    {"fluid.flow_axis", "Axis along which it flows."},
+    {"fluid.flow_ramp", "Time in which the flow comes up as ½(1 - cos)."},
     {"fluid.velocity_scale",
      "Characteristic velocity: the largest speed to expect of fluid or particle."},
     {"numerics.cell", "Size of a cell; give it or cells_per_diameter.", "from cells_per_diameter"},
@@ -171,6 +178,10 @@ constexpr Meaning kMeanings[] = {
      "Velocity of a velocity or moving_wall; at the middle of a parabolic profile.",
      "required there"},
     {"boundary.profile", "Profile of the velocity along the opening."},
+    {"boundary.profile_table",
+     "The velocity is multiplied by a factor along the side: a file beside the scene that begins "
+     "with "
+     "its axes and factor, as y,factor [m, 1] (boundaries.md)."},
     {"boundary.frequency",
      "The velocity or pressure is multiplied by cos(2πft); not of an outflow."},
     {"boundary.table",
@@ -216,6 +227,7 @@ constexpr Meaning kMeanings[] = {
     {"initial.sharpness", "Steepness of the shear layers."},
     {"initial.perturbation", "Disturbance of the shear layers over the velocity."},
     {"output.fields_every", "How often fields are written; 0: never."},
+    {"output.viscosity", "Whether the fields have the viscosity of each cell (viscosity.md)."},
     {"output.probe_every",
      "How often probes, points and loads of obstacles are written; 0: every interval."},
     {"output.points", "Places whose pressure and velocity are written."},
@@ -232,7 +244,7 @@ constexpr Meaning kMeanings[] = {
     {"sensor.from", "Corner of the part of a plane that counts, or one end of a line.",
      "whole plane"},
     {"sensor.to", "The opposite corner, or the other end.", "whole plane"},
-    {"sensor.count", "Places along a line."},
+    {"sensor.count", "Places along a line.", "20"},
     {"sensor.side", "Side of the box.", "required of a side"},
 };
 

@@ -32,6 +32,8 @@ const std::map<std::string, std::string> kUnits{
     {"shear_rate_max", "1/s"},
     {"share_at_rest_bound", "1"},
     {"share_at_shear_bound", "1"},
+    {"flow", "m³/s"},
+    {"pressure_gradient", "Pa/m"},
     {"gravity_x", "m/s²"},
     {"gravity_y", "m/s²"},
     {"gravity_z", "m/s²"},

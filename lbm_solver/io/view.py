@@ -30,7 +30,7 @@ def arguments():
     p.add_argument("--time", type=float, help="of the frame [s]; default: the last one")
     p.add_argument("--out", default=os.path.join(folder(), "view.png"), help="picture to write")
     p.add_argument("--broken", action="store_true", help="show broken bonds too, where they broke")
-    p.add_argument("--field", default="velocity", choices=["velocity", "pressure"])
+    p.add_argument("--field", default="velocity", choices=["velocity", "pressure", "viscosity"])
     return p.parse_args([] if paraview.fromGUI else sys.argv[1:])
 
 
@@ -98,9 +98,15 @@ def colour(display, view, fluid, field, largest):
     pv.ColorBy(display, ("CELLS", field, "Magnitude") if vector else ("CELLS", field))
     table = pv.GetColorTransferFunction(field)
     table.ApplyPreset("Inferno (matplotlib)" if vector else "Cool to Warm", True)
-    table.RescaleTransferFunction(0.0 if vector else -largest, largest or 1.0)
+    if field == "viscosity":
+        low, high = reach(fluid, field)
+        table.RescaleTransferFunction(low, high)
+        table.MapControlPointsToLogSpace()
+        table.UseLogScale = 1
+    else:
+        table.RescaleTransferFunction(0.0 if vector else -largest, largest or 1.0)
     bar = pv.GetScalarBar(table, view)
-    bar.Title, bar.ComponentTitle = ("speed [m/s]", "") if vector else ("pressure [Pa]", "")
+    bar.Title, bar.ComponentTitle = {"velocity": "speed [m/s]", "viscosity": "viscosity [m²/s]"}.get(field, "pressure [Pa]"), ""
     bar.TitleColor = bar.LabelColor = [0, 0, 0]
     bar.TitleFontSize = bar.LabelFontSize = 14
     bar.WindowLocation = "Upper Right Corner"
@@ -175,6 +181,8 @@ def main():
     view.Background = [1, 1, 1]
     view.OrientationAxesVisibility = 0
     fluid = block("fluid")
+    if fluid.CellData.GetArray(args.field) is None:
+        sys.exit(f"view | error | the fields of this run have no {args.field}; a scene's output.viscosity = true writes it")
     times = list(fluid.TimestepValues) or [0.0]
     bounds = fluid.GetDataInformation().GetBounds()
     cells = fluid.GetDataInformation().GetExtent()

@@ -50,6 +50,14 @@ double largest_pressure(const Scene& s) {
   return std::max(hi - lo, s.box.pressure_jump.cwiseAbs().maxCoeff());
 }
 
+double mean_speed(const Scene& s) {
+  if (!s.fluid.flow) return 0.0;
+  double area = s.box.dimension == 2 ? s.box.depth : 1.0;
+  for (int k = 0; k < s.box.dimension; ++k)
+    if (k != s.fluid.flow->axis) area *= s.box.size[k];
+  return std::abs(s.fluid.flow->rate) / area;
+}
+
 std::vector<Drive> drives(const Scene& s) {
   std::vector<Drive> list;
   const auto add = [&list](double speed, std::string what) {
@@ -58,7 +66,7 @@ std::vector<Drive> drives(const Scene& s) {
   add(s.initial.velocity.norm(),
       fmt::format("initial.velocity = {:.3g} m/s", s.initial.velocity.norm()));
   for (const BoundaryScene& b : s.boundaries)
-    add(b.velocity.norm() * b.table.largest(),
+    add(b.velocity.norm() * b.table.largest() * b.profile.largest(),
         fmt::format("boundary.velocity = {:.3g} m/s", b.velocity.norm()));
   for (const ObstacleScene& o : s.obstacles)
     add(0.5 * o.diameter * o.spin.norm(),
@@ -66,6 +74,8 @@ std::vector<Drive> drives(const Scene& s) {
   const double force = s.fluid.body_force.norm() * s.fluid.body_force_table.largest(),
                pressure = largest_pressure(s);
   add(channel_speed(s, force), fmt::format("fluid.body_force = {:.3g} m/s²", force));
+  if (s.fluid.flow)
+    add(mean_speed(s), fmt::format("fluid.flow_rate = {:.3g} m³/s", s.fluid.flow->rate));
   add(std::sqrt(2.0 * pressure / s.fluid.density),
       fmt::format("a pressure difference of {:.3g} Pa", pressure));
   if (s.particles && s.coupling)

@@ -22,4 +22,7 @@ std::vector<Drive> drives(const Scene& scene);
 /// Largest difference between the pressures of boundaries, or across periodic sides [Pa].
 double largest_pressure(const Scene& scene);
 
+/// Mean speed of a flow that is held over the cross-section of the box [m/s]; 0 without one.
+double mean_speed(const Scene& scene);
+
 }  // namespace lbm

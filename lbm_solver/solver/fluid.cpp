@@ -53,6 +53,11 @@ void Fluid::vary_body_force(const InTime& in_time) {
   set_body_force();
 }
 
+void Fluid::hold_flow(const FlowControl& control) {
+  BPLBM_EXPECT(choice_.force);
+  flow_ = control;
+}
+
 void Fluid::set_body_force(const Vec3& force) {
   BPLBM_EXPECT(choice_.force);
   CollisionParameters& p = choice_.parameters;
@@ -71,6 +76,10 @@ void Fluid::set_body_force() {
        {&CollisionParameters::force_x, &CollisionParameters::force_y,
         &CollisionParameters::force_z})
     now.parameters.*component *= part;
+  if (flow_) {
+    CollisionParameters& p = now.parameters;
+    (flow_->axis() == 0 ? p.force_x : flow_->axis() == 1 ? p.force_y : p.force_z) += flow_->force();
+  }
   kernel_ = make_kernel(now);
   medium_.parameters = now.parameters;
   if (scheme_) scheme_->set_body_force(body_force());
@@ -164,11 +173,23 @@ void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
 }
 
 void Fluid::make_steps(std::int64_t steps, const AfterStep& after_each) {
-  for (; steps > 0 && force_in_time_.changes_after(steps_); --steps) {
-    make_steps_under_force(1, after_each);
+  while (steps > 0) {
+    const bool changes = force_in_time_.changes_after(steps_);
+    const std::int64_t now = changes ? 1 : steps, made = flow_ ? adjust_flow(now) : now;
+    make_steps_under_force(made, after_each);
+    if (changes) set_body_force();
+    steps -= made;
+  }
+}
+
+/// Finds the force that holds the flow, where it is time. @return how many of the coming steps it
+/// stays for
+std::int64_t Fluid::adjust_flow(std::int64_t steps) {
+  if (flow_->due(steps_)) {
+    flow_->adjust(steps_, mean_velocity(*this, flow_->axis()));
     set_body_force();
   }
-  if (steps > 0) make_steps_under_force(steps, after_each);
+  return std::min(steps, flow_->until_next(steps_));
 }
 
 /// A step is three operators, each called by every thread of one parallel region.

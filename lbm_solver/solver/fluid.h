@@ -13,6 +13,7 @@
 #include "lbm_solver/field/halo_exchange.h"
 #include "lbm_solver/immersed/body_scheme.h"
 #include "lbm_solver/immersed/two_step_loads.h"
+#include "lbm_solver/solver/flow_control.h"
 #include "lbm_solver/solver/kernel.h"
 #include "lbm_solver/solver/row_moments.h"
 
@@ -66,6 +67,10 @@ class Fluid {
   }
   /// The body force of the kernel's choice changes in time as `in_time` says.
   void vary_body_force(const InTime& in_time);
+  /// A further body force along an axis holds a flow. The kernel's choice must have one.
+  void hold_flow(const FlowControl& control);
+  /// Null where no flow is held.
+  const FlowControl* flow_control() const { return flow_ ? &*flow_ : nullptr; }
   /// Another one from the coming step on. The kernel's choice must have one.
   void set_body_force(const Vec3& force);
   /// On a cell in the coming step.
@@ -154,6 +159,7 @@ class Fluid {
   void make_steps(std::int64_t steps, const AfterStep& after_each);
   void make_steps_under_force(std::int64_t steps, const AfterStep& after_each);
   void set_body_force();
+  std::int64_t adjust_flow(std::int64_t steps);
   void remember_loads();
   Record save_boundary(std::size_t number) const;
   void load_boundary(std::size_t number, const Record& record);
@@ -166,6 +172,7 @@ class Fluid {
   KernelChoice choice_;
   std::unique_ptr<Kernel> kernel_;
   InTime force_in_time_;
+  std::optional<FlowControl> flow_;
   std::unique_ptr<HaloExchange> halo_;
   std::unique_ptr<CoverMap> cover_;
   RowMedium medium_;

@@ -59,6 +59,7 @@ Record Fluid::save() const {
   for (std::size_t i = 0; i < patches_.size(); ++i)
     record.set("boundary" + std::to_string(i + 1), save_boundary(i));
   if (scheme_) record.set("scheme", scheme_->save());
+  if (flow_) record.set("flow", flow_->save());
   if (two_steps_.on()) {
     TwoStepLoads last = two_steps_;
     if (loads_are_new_) last.remember(bodies_, cover_->loads());
@@ -76,6 +77,7 @@ void Fluid::load(const Record& record) {
   for (std::size_t i = 0; i < patches_.size(); ++i)
     load_boundary(i, record.part("boundary" + std::to_string(i + 1)));
   if (scheme_) scheme_->load(record.part("scheme"));
+  if (flow_) flow_->load(record.part("flow"));
   if (two_steps_.on()) {
     two_steps_.load(record.part("loads"));
     if (!fixed_.empty()) fixed_two_steps_.load(record.part("fixed_loads"));
@@ -89,7 +91,7 @@ void Fluid::load(const Record& record) {
   populations = ranks_->scatter(std::move(populations), lattice().Q);
   steps_ = record.integer("steps");
   stream_.set_odd(record.integer("odd") != 0);
-  if (force_in_time_.changes_after(0)) set_body_force();
+  if (force_in_time_.changes_after(0) || flow_) set_body_force();
   each_cell(n, [&](std::size_t number, int x, int y, int z) {
     for (int q = 0; q < lattice().Q; ++q) arriving(q, x, y, z) = populations[number * q_count + q];
   });

@@ -158,6 +158,27 @@ void check_boundaries(const Scene& s) {
     }
 }
 
+/// The body force is free to give a flow where nothing else drives it, or holds it.
+void check_flow(const Scene& s) {
+  if (!s.fluid.flow) return;
+  const int axis = s.fluid.flow->axis;
+  const std::string key = s.file + ": fluid.flow_rate";
+  if (s.box.sides[axis] != SideKind::Periodic)
+    throw InputError(
+        key,
+        fmt::format("goes along {0}, and sides_{0} are walls: nothing can flow there", "xyz"[axis]),
+        fmt::format("make box.sides_{} \"periodic\", give another fluid.flow_axis, or a "
+                    "[[boundary]] velocity whose flow is known",
+                    "xyz"[axis]));
+  if (s.box.pressure_jump[axis] != 0.0 || s.fluid.body_force[axis] != 0.0)
+    throw InputError(
+        key,
+        fmt::format("stands beside {} along {}, and finds the force itself",
+                    s.fluid.body_force[axis] != 0.0 ? "fluid.body_force" : "box.pressure_jump",
+                    "xyz"[axis]),
+        "leave one of them out");
+}
+
 /// A force can carry the weight only where nothing else does.
 void check_carried_weight(const Scene& s) {
   if (!s.coupling || !s.coupling->carry_weight) return;
@@ -193,14 +214,14 @@ double depth_in(const Scene& s, const ObstacleScene& o, const Vec3& x, double r)
 }
 
 Range extent(const Scene& s, const BoundaryScene& b, int k) {
-  int axis = axis_of(b.side) == 0 ? 1 : 0;
-  if (k == 1) axis = axis_of(b.side) == 2 ? 1 : 2;
+  const int axis = axis_along(b.side, k);
   const double lo = s.box.origin[axis];
   return {b.from[k].value_or(lo), b.to[k].value_or(lo + s.box.size[axis])};
 }
 
 void check_places(const Scene& s) {
   check_carried_weight(s);
+  check_flow(s);
   if (s.particles) {
     check_particles(s);
     check_starts(s);

@@ -300,7 +300,8 @@ void choose_kernel(const Scene& s, Plan& plan) {
         s.file +
             ": numerics.collision = \"recursive_regularised\" is there in double precision only",
         "take central_moment, or precision = \"double\"");
-  k.force = s.fluid.body_force.norm() > 0.0 || (s.coupling && s.coupling->carry_weight);
+  k.force =
+      s.fluid.body_force.norm() > 0.0 || s.fluid.flow || (s.coupling && s.coupling->carry_weight);
   choose_solids(s, plan);
   const Vec3 force = s.fluid.body_force * (dt * dt / dx);
   k.parameters = {.tau = 0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),

@@ -36,9 +36,10 @@ std::pair<double, std::string> given_speed(const Scene& s) {
     if (speed > largest.first) largest = {speed, what};
   };
   for (const BoundaryScene& b : s.boundaries)
-    look(b.velocity.norm() * b.table.largest(), "boundary.velocity");
+    look(b.velocity.norm() * b.table.largest() * b.profile.largest(), "boundary.velocity");
   for (const ObstacleScene& o : s.obstacles)
     look(0.5 * o.diameter * o.spin.norm(), "an obstacle's spin");
+  look(mean_speed(s), "fluid.flow_rate");
   return largest;
 }
 
@@ -55,6 +56,25 @@ void check_speed(const Scene& s, Plan& plan) {
                     what, speed, s.fluid.velocity_scale));
 }
 
+/// Mean factor of a velocity over a boundary.
+double mean_factor(const Scene& s, const BoundaryScene& b) {
+  if (b.parabolic) return std::pow(2.0 / 3.0, s.box.dimension - 1);
+  if (b.profile.factors.empty()) return 1.0;
+  constexpr int parts = 200;  // along each axis
+  const SideProfile profile{b.profile.places, b.profile.factors};
+  double sum = 0.0;
+  for (int i = 0; i < parts * parts; ++i) {
+    std::array<double, 2> at{};
+    for (int k = 0; k < s.box.dimension - 1; ++k) {
+      const Range part = extent(s, b, k);
+      const int number = k == 0 ? i % parts : i / parts;
+      at[k] = part.lo + (number + 0.5) / parts * (part.hi - part.lo);
+    }
+    sum += profile.factor(at);
+  }
+  return sum / (parts * parts);
+}
+
 /// What the velocity boundaries bring in, less what they take out, over the sum of both.
 double surplus(const Scene& s) {
   double sum = 0.0, all = 0.0;
@@ -62,8 +82,9 @@ double surplus(const Scene& s) {
     double flow = b.velocity[axis_of(b.side)] * (is_high(b.side) ? -1.0 : 1.0);
     for (int k = 0; k < s.box.dimension - 1; ++k) {
       const Range part = extent(s, b, k);
-      flow *= (part.hi - part.lo) * (b.parabolic ? 2.0 / 3.0 : 1.0);
+      flow *= part.hi - part.lo;
     }
+    flow *= mean_factor(s, b);
     sum += flow;
     all += std::abs(flow);
   }
@@ -119,6 +140,8 @@ void check_frequencies(const Scene& s, Plan& plan) {
 
 /// Keys that have no effect in this scene.
 void check_idle_keys(const Scene& s, Plan& plan) {
+  if (s.output.viscosity && !plan.kernel.local_viscosity())
+    plan.warnings.push_back("output.viscosity writes a viscosity that is the same everywhere");
   if (s.fluid.body_force_ramp > s.end_time)
     plan.warnings.push_back(
         fmt::format("fluid.body_force_ramp = {:.4g} s is longer than the run: the force reaches "
@@ -129,6 +152,11 @@ void check_idle_keys(const Scene& s, Plan& plan) {
   if (s.numerics.weight != "auto" && by_resistance(plan.kernel.solid_term))
     plan.warnings.push_back(fmt::format("numerics.weight = \"{}\" has no effect: {} has no weight",
                                         s.numerics.weight, plan.kernel.solid_term));
+}
+
+/// A body force of its own carries the particles' weight along an axis.
+bool carried(const Scene& s, int axis) {
+  return (s.coupling && s.coupling->carry_weight) || (s.fluid.flow && s.fluid.flow->axis == axis);
 }
 
 /// Gravity that points upwards, or that nothing holds.
@@ -142,7 +170,7 @@ void check_gravity(const Scene& s, Plan& plan) {
       s.particles->density.lo == s.fluid.density && s.particles->density.hi == s.fluid.density;
   for (int k = 0; k < s.box.dimension && !neutral; ++k)
     if (g[k] != 0.0 && s.box.sides[k] == SideKind::Periodic && s.fluid.body_force[k] == 0.0 &&
-        s.box.pressure_jump[k] == 0.0)
+        !carried(s, k) && s.box.pressure_jump[k] == 0.0)
       plan.warnings.push_back(
           fmt::format("fluid.gravity acts along {0}, where the box is periodic and nothing holds "
                       "the particles: they take the fluid along, faster and faster; take "

@@ -8,6 +8,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/plan.h"
 
 namespace lbm {
@@ -49,9 +50,23 @@ InTime in_time(const Plan& p, double ramp, double frequency, const TimeTableScen
   return t;
 }
 
+SideProfile profile(const Scene& s, const Plan& p, const BoundaryScene& b) {
+  SideProfile cells{b.profile.places, b.profile.factors};
+  for (int k = 0; k < 2; ++k)
+    for (double& place : cells.places[k])
+      place = (place - s.box.origin[axis_along(b.side, k)]) / p.units.dx;
+  return cells;
+}
+
 void add_boundary(const Scene& s, const Plan& p, const BoundaryScene& b, Fluid& fluid) {
   const Opening o = opening(s, p, b);
   const InTime value = in_time(p, b.ramp, b.frequency, b.table);
+  if (!b.profile.factors.empty()) {
+    fluid.add(std::make_unique<VelocityPatch>(fluid.lattice(), fluid.links(o),
+                                              p.units.to_lattice_velocity(b.velocity),
+                                              profile(s, p, b), value));
+    return;
+  }
   if (b.kind == BoundaryScene::Kind::Velocity) {
     fluid.add(std::make_unique<VelocityPatch>(fluid.lattice(), fluid.links(o),
                                               p.units.to_lattice_velocity(b.velocity), b.parabolic,
@@ -76,6 +91,12 @@ void add_pressure_jump(const Plan& p, int axis, double jump, Fluid& fluid) {
                                                   sign * jump / p.units.pressure(), InTime{}));
     sign = -1.0;
   }
+}
+
+FlowControl flow_control(const Scene& s, const Plan& p) {
+  const FlowScene& flow = *s.fluid.flow;
+  const double speed = std::copysign(mean_speed(s), flow.rate) / p.units.velocity();
+  return {flow.axis, speed, {.ramp_steps = flow.ramp / p.units.dt}, p.domain.cells()[flow.axis]};
 }
 
 CellBox cells_of(const Scene& s, const Plan& p, const ObstacleScene& o) {
@@ -203,6 +224,7 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
   const InTime force =
       in_time(p, s.fluid.body_force_ramp, s.fluid.body_force_frequency, s.fluid.body_force_table);
   if (force.changes_after(0)) fluid.vary_body_force(force);
+  if (s.fluid.flow) fluid.hold_flow(flow_control(s, p));
   if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
   if (s.initial.kind == InitialScene::Kind::Rest && !p.kernel.force) return fluid;
   const Block& cells = ranks.cells();

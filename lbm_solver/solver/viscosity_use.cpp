@@ -2,12 +2,15 @@
 #include "lbm_solver/solver/viscosity_use.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace lbm {
 namespace {
 
-/// What the table wants of a cell: 2 Q_ab Q_ab / rho², without Q's trace.
-double stress_of(const Fluid& fluid, int x, int y, int z) {
+/// What the table wants of a cell: 2 Q_ab Q_ab / rho², without Q's trace or with it.
+enum class Trace { Left, Taken };
+double stress_of(const Fluid& fluid, int x, int y, int z, Trace with = Trace::Taken) {
   const Lattice& l = fluid.lattice();
   const auto [rho, u] = fluid.cell(x, y, z);
   const Vec3 force = fluid.body_force();
@@ -24,13 +27,35 @@ double stress_of(const Fluid& fluid, int x, int y, int z) {
     trace += q[a][a];
   }
   for (int a = 0; a < l.D; ++a) {
-    q[a][a] -= trace / l.D;
+    if (with == Trace::Taken) q[a][a] -= trace / l.D;
     for (int b = 0; b < l.D; ++b) squares += q[a][b] * q[a][b];
   }
   return 2.0 * squares / (rho * rho);
 }
 
+constexpr double kLeastFluid = 0.05;  // as in LocalViscosity
+
+/// As LocalViscosity finds it, of a cell that is open in part.
+double tau_of(const Fluid& fluid, const CollisionParameters& p, double open, int x, int y, int z) {
+  if (p.viscosity_table) {
+    const double part = kLeastFluid + (1.0 - kLeastFluid) * open;
+    return 1.0 / (*p.viscosity_table)(stress_of(fluid, x, y, z) / (part * part));
+  }
+  const double eddies = 18.0 * p.smagorinsky * p.smagorinsky;
+  const double stress = std::sqrt(stress_of(fluid, x, y, z, Trace::Left));
+  return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + eddies * stress));
+}
+
 }  // namespace
+
+void row_viscosity(const Fluid& fluid, const CollisionParameters& parameters, int y, int z,
+                   std::span<double> nu) {
+  for (int x = 0; x < fluid.cells().size[0]; ++x) {
+    const double solid = fluid.cover() ? fluid.cover()->solid_fraction(x, y, z) : 0.0;
+    nu[x] = solid >= kWhole ? std::numeric_limits<double>::quiet_NaN()
+                            : (tau_of(fluid, parameters, 1.0 - solid, x, y, z) - 0.5) / 3.0;
+  }
+}
 
 ViscosityUse viscosity_use(const Fluid& fluid, const RelaxationTable& table) {
   const Cell3& n = fluid.cells().size;

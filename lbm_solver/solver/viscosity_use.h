@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <span>
+
 #include "lbm_solver/solver/fluid.h"
 #include "lbm_solver/viscosity/relaxation_table.h"
 
@@ -17,5 +19,11 @@ struct ViscosityUse {
 
 /// Of the present state. Collective.
 ViscosityUse viscosity_use(const Fluid& fluid, const RelaxationTable& table);
+
+/// Kinematic viscosity with which the cells of a row collide, an eddy viscosity with it, lattice
+/// units; not a number where a solid covers a cell whole.
+/// @param nu  [nx], overwritten
+void row_viscosity(const Fluid& fluid, const CollisionParameters& parameters, int y, int z,
+                   std::span<double> nu);
 
 }  // namespace lbm

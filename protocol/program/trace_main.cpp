@@ -61,7 +61,8 @@ int info(const std::string& path) {
 int diff(const std::string& path_a, const std::string& path_b, bool physics, double tolerance) {
   const Trace first(path_a);
   const auto a = timeline(first), b = timeline(Trace(path_b));
-  TraceComparison result(physics ? physical_scales(a, first.hello(Role::Fluid)) : largest_norms(a));
+  TraceComparison result(physics ? physical_scales(a, first.hello(Role::Fluid)) : largest_norms(a),
+                         tolerance);
   for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
     result.states(a[k].head.interval, a[k].states, b[k].states);
     result.loads(a[k].head.interval, a[k].loads, b[k].loads);

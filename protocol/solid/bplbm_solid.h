@@ -162,7 +162,8 @@ int bplbm_checkpoint(bplbm_solid* solid, const void* bytes, int64_t size);
 int bplbm_report(bplbm_solid* solid, int64_t left, const int64_t counts[5], int64_t n,
                  const bplbm_bond* bonds);
 
-/* Leaves in good order in place of the next states. Call bplbm_close next. */
+/* Leaves in good order in place of the next states: the way to end before the fluid does. Call
+ * bplbm_close next. (Without a goodbye the fluid ends with exit code 1, naming this program.) */
 int bplbm_goodbye(bplbm_solid* solid, const char* reason);
 
 /* Says that this program cannot go on, and why; the fluid prints it. Returns `code`, which must be

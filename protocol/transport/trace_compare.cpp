@@ -157,10 +157,19 @@ void TraceComparison::vectors(std::int64_t interval, std::int64_t id, int field,
     double way = a[k] - b[k];
     if (field == 0 && scale_.period[k] > 0.0) way = std::remainder(way, scale_.period[k]);
     if (way == 0.0) continue;
-    if (!first_) first_ = {interval, id, format("{}[{}]", kFields[field], k), a[k], b[k]};
-    const double relative = std::abs(way) / std::max(scales[field], 1e-300);
-    largest_[field] = std::isfinite(relative) ? std::max(largest_[field], relative) : kInfinity;
+    const double quotient = std::abs(way) / std::max(scales[field], 1e-300);
+    const double relative = std::isfinite(quotient) ? quotient : kInfinity;
+    note({interval, id, format("{}[{}]", kFields[field], k), a[k], b[k]}, relative);
+    largest_[field] = std::max(largest_[field], relative);
   }
+}
+
+void TraceComparison::note(const Difference& difference, double relative) {
+  if (!first_) first_ = difference;
+  if (!beyond_ && relative > tolerance_) beyond_ = difference;
+  if (relative <= worst_relative_) return;
+  worst_relative_ = relative;
+  worst_ = difference;
 }
 
 template <class Record, class Compare>
@@ -172,9 +181,9 @@ void TraceComparison::records(std::int64_t interval, std::span<const Record> a,
       continue;
     }
     const auto& present = i < a.size() ? a[i] : b[i];
-    if (!first_)
-      first_ = {interval, present.id, "particle is on one side only", static_cast<double>(a.size()),
-                static_cast<double>(b.size())};
+    note({interval, present.id, "particle is on one side only", static_cast<double>(a.size()),
+          static_cast<double>(b.size())},
+         kInfinity);
     largest_.fill(kInfinity);
     return;
   }
@@ -199,9 +208,13 @@ void TraceComparison::loads(std::int64_t interval, std::span<const Load> a,
 
 std::string TraceComparison::text() const {
   if (!first_) return "identical, bit for bit";
-  const std::string first =
-      format("first difference at interval {}, particle {}, {}: {:.17g} against {:.17g}; ",
-             first_->interval, first_->id, first_->field, first_->a, first_->b);
+  const auto place = [](const char* which, const Difference& d) {
+    return format("{} at interval {}, particle {}, {}: {:.17g} against {:.17g}; ", which,
+                  d.interval, d.id, d.field, d.a, d.b);
+  };
+  std::string first = place("first difference", *first_);
+  if (tolerance_ > 0.0 && beyond_) first += place("first beyond the tolerance", *beyond_);
+  if (worst_) first += place("largest", *worst_);
   if (!scale_.physical) return first + format("largest relative difference {:.3g}", largest());
   const auto& [x, v, omega, force, torque] = largest_;
   return first +

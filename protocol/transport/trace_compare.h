@@ -48,7 +48,9 @@ class TraceComparison {
   /// @param scale  the exchange whose largest norms set what "relative" means
   explicit TraceComparison(std::span<const IntervalRecord> scale)
       : TraceComparison(largest_norms(scale)) {}
-  explicit TraceComparison(const Scales& scales) : scale_(scales) {}
+  /// @param tolerance  largest difference over the scale of its field that passes
+  explicit TraceComparison(const Scales& scales, double tolerance = 0.0)
+      : scale_(scales), tolerance_(tolerance) {}
 
   void states(std::int64_t interval, std::span<const State> a, std::span<const State> b);
   void loads(std::int64_t interval, std::span<const Load> a, std::span<const Load> b);
@@ -59,6 +61,9 @@ class TraceComparison {
     double a = 0.0, b = 0.0;
   };
   const std::optional<Difference>& first() const { return first_; }
+  /// The first above the tolerance, and the largest.
+  const std::optional<Difference>& first_beyond() const { return beyond_; }
+  const std::optional<Difference>& worst() const { return worst_; }
   /// Largest |a-b| over the scale of its field; infinite where a particle is missing.
   double largest() const;
   /// One sentence for a user.
@@ -70,8 +75,11 @@ class TraceComparison {
                Compare&& compare);
   void vectors(std::int64_t interval, std::int64_t id, int field, const Vec3& a, const Vec3& b);
 
+  void note(const Difference& difference, double relative);
+
   Scales scale_;
-  std::optional<Difference> first_;
+  double tolerance_ = 0.0, worst_relative_ = 0.0;
+  std::optional<Difference> first_, beyond_, worst_;
   std::array<double, 5> largest_{};  // of x, v, omega, force, torque
 };
 

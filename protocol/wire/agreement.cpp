@@ -114,7 +114,9 @@ class Comparison {
     if (s_.particles && *s_.particles == 0) return;
     compare("radius", "m", f_.radius, s_.radius, "");
     compare("density", "kg/m³", f_.density, s_.density,
-            f_.dimension == 2 ? "; LIGGGHTS discs have unit depth: set density times depth" : "");
+            f_.dimension == 3          ? ""
+            : s_.program == "liggghts" ? "; LIGGGHTS discs have unit depth: set density times depth"
+                                       : "; the mass of a disc is π r² × density × depth");
   }
 
   /// The solid's range must lie inside the one the fluid's scene states.

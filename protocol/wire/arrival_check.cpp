@@ -143,7 +143,9 @@ void ArrivalCheck::inertia(const Shape& s, double volume, std::int64_t interval)
         "particle {}: density {:.6g} kg/m³ at interval {} (mass {:.6g} kg in {:.6g} m³), the "
         "scene's particles.density says {:.6g} … {:.6g} kg/m³; correct one of them{}",
         s.id, density, interval, s.mass, volume, fluid_.density->lo, fluid_.density->hi,
-        fluid_.dimension == 2 ? "; LIGGGHTS discs have unit depth: set density times depth" : "");
+        fluid_.dimension == 2
+            ? format("; a disc has a mass of π r² × density × the depth of {:.6g} m", fluid_.depth)
+            : "");
   if (const double most = s.mass * s.radius * s.radius; s.inertia > most * (1.0 + kSlack))
     refuse(
         "particle {}: inertia {:.6g} kg m² at interval {}: no ball of {:.6g} kg and radius {:.6g} "

@@ -229,6 +229,25 @@ TEST(Ranks, GoOnFromAStateOfAnotherGrid) {
   EXPECT_NEAR(two.mass_in(), whole.mass_in(), 1e-13);
 }
 
+// The mean velocity is added up in whole numbers, so that every grid finds the same force.
+TEST(Ranks, HoldTheSameFlow) {
+  const Domain domain{23, 14, Side::Wall, Side::Periodic, 13, Side::Wall};
+  KernelChoice choice = choice_for("D3Q19", Precision::Double);
+  choice.force = true;
+  for (const Cell3& grid : grids(domain)) {
+    const Decomposition ranks(domain, MPI_COMM_WORLD, grid);
+    Fluid part(ranks, choice), whole(domain, choice);
+    for (Fluid* f : {&part, &whole}) {
+      f->place(bodies_in(domain));
+      f->hold_flow({1, 0.01, {}, domain.ny});
+      randomise(*f);
+      f->advance(40);
+    }
+    EXPECT_NEAR(part.flow_control()->force(), whole.flow_control()->force(), 1e-15);
+    expect_same_cells(part, whole, 1e-15);
+  }
+}
+
 TEST(Ranks, AddEachLubricationForceOnce) {
   for (const Side side : {Side::Periodic, Side::Wall}) {
     const Domain domain{24, 20, side, side, 16, side};

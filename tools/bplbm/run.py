@@ -239,6 +239,10 @@ def check_programs(args):
     if (args.no_build or INSTALLED) and not (BIN / "lbm").exists():
         what = "install the package again" if INSTALLED else "leave --no-build out, or run tools/build"
         fail(f"{BIN / 'lbm'} is missing: {what}")
+    if args.no_build and args.engine == "liggghts" and not args.engine_command and args.scene.is_coupled \
+            and not (BIN / "liggghts").exists():
+        fail(f"{BIN / 'liggghts'} is missing: run tools/build, or take an engine that does without LIGGGHTS "
+             "(--engine reference or python, --engine-command)")
     if args.engine in ("lammps", "reference") and INSTALLED and not (BIN / f"{args.engine}_engine").exists():
         fail(f"--engine {args.engine} is not part of the package; build BPLBM from its sources for it")
     if shutil.which("mpirun") is None:

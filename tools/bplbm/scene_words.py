@@ -22,14 +22,27 @@ def words(boundary):
     return kind
 
 
+def viscosity_text(fluid):
+    """ν, or the law that it follows."""
+    law = fluid.get("viscosity", {})
+    model = law.get("model", "newtonian")
+    if "kinematic_viscosity" in fluid:
+        return f"ν = {fluid['kinematic_viscosity']:g} m²/s" + (", Smagorinsky" if model == "smagorinsky" else "")
+    named = {"consistency": "K = {:g}" + (" Pa s" if model == "bingham" else " Pa sⁿ"), "index": "n = {:g}",
+             "yield_stress": "σ_y = {:g} Pa", "time_constant": "λ = {:g} s"}
+    return ", ".join([model.replace("_", " "), *(text.format(law[key]) for key, text in named.items() if key in law)])
+
+
 def drive_text(scene):
     """Lines on the fluid, what drives it, and the particles."""
     fluid, box = scene["fluid"], scene["box"]
-    parts = [f"ρ = {fluid['density']:g} kg/m³, ν = {fluid['kinematic_viscosity']:g} m²/s"]
+    parts = [f"ρ = {fluid['density']:g} kg/m³, {viscosity_text(fluid)}"]
     if any(fluid.get("gravity", [])):
         parts.append(f"g = {np.linalg.norm(fluid['gravity']):g} m/s² ↓")
     if any(fluid.get("body_force", [])):
         parts.append(f"body force {np.linalg.norm(fluid['body_force']):g} m/s² →")
+    if "flow_rate" in fluid:
+        parts.append(f"flow {fluid['flow_rate']:g} m³/s →")
     if any(box.get("pressure_jump", [])):
         parts.append(f"pressure jump {np.max(np.abs(box['pressure_jump'])):g} Pa")
     if "particles" in scene:

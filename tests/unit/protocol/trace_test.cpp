@@ -114,6 +114,23 @@ TEST_F(TraceTest, PhysicsMeasuresPlacesInRadiiAndLoadsInWeights) {
   EXPECT_NE(compare.text().find("0.05 weights in force"), std::string::npos) << compare.text();
 }
 
+TEST_F(TraceTest, ATolerancePassesOverRoundOff) {
+  IntervalRecord record;
+  record.states = {{1, {0.2, 0.0, 0.0}, {}, {}}};
+  record.shapes = {{1, 0.01, 2.0, 1e-4, 1}};
+  TraceComparison compare(physical_scales(std::vector{record}, Hello()), 0.1);
+  for (const auto& [interval, way] : {std::pair{1, 1e-15}, {5, 0.002}, {6, 0.009}, {7, 0.004}}) {
+    auto other = record.states;
+    other[0].x[0] += way;
+    compare.states(interval, record.states, other);
+  }
+  ASSERT_TRUE(compare.first() && compare.first_beyond() && compare.worst());
+  EXPECT_EQ(compare.first()->interval, 1);
+  EXPECT_EQ(compare.first_beyond()->interval, 5);  // a fifth of a radius
+  EXPECT_EQ(compare.worst()->interval, 6);
+  EXPECT_NE(compare.text().find("first beyond the tolerance at interval 5"), std::string::npos);
+}
+
 TEST_F(TraceTest, AMissingParticleIsAnInfiniteDifference) {
   make("a.h5");
   auto a = timeline(Trace(file("a.h5")));

@@ -1,4 +1,4 @@
-"""The hard cases of bonds and of single steps, run with the default: what is asked of it is met."""
+"""The hard cases of bonds, of viscosity laws and of single steps, run with the default: what is asked of it is met."""
 
 import pathlib
 import sys
@@ -8,7 +8,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 
 from bplbm.report import stability  # noqa: E402
-from bplbm.report.hard import BONDS, STEPS, hard_cases  # noqa: E402
+from bplbm.report.hard import OWN, STEPS, gels, hard_cases  # noqa: E402
 from bplbm.report.stability import AUTO, RULE  # noqa: E402
 
 
@@ -19,11 +19,19 @@ class TheDefault(unittest.TestCase):
         stability.OUT = pathlib.Path(folder.name)
 
     def test_keeps_momentum_energy_and_time_of_bonds_that_break(self):
-        cases = [case for case in hard_cases(True) if BONDS in pathlib.Path(case.scene).parents]
+        cases = [case for case in hard_cases(True) if pathlib.Path(case.scene).name.startswith("bond")]
         self.assertEqual(len(cases), 2)
         for case in cases:
             became = stability.outcome(case, {"collision": AUTO, "solid_term": AUTO}, True)
             self.assertTrue(became["met"], f"{case.name}: {became}")
+
+    def test_bounds_or_refuses_what_is_thin_thick_or_held(self):
+        for case in gels():
+            self.assertTrue((OWN / pathlib.Path(case.scene).name).is_dir())
+            became = stability.outcome(case, {"collision": AUTO, "solid_term": AUTO}, True)
+            self.assertEqual(became["verdict"], "refused" if case.asked == "refused" else "bounded", f"{case.name}: {became}")
+            self.assertIsNot(became["met"], False, f"{case.name}: {became}")
+            print(f"{case.name}: {became['verdict']} {became['value']}")
 
     def test_does_in_single_steps_what_is_asked(self):
         values = stability.step_values({"collision": AUTO, **stability.SOLIDS[RULE]}, True)

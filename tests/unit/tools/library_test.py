@@ -20,7 +20,7 @@ MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none", "-np", "1"]
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_mpi_yield_when_idle="1")
 THREE_LINES = """find_package(bplbm REQUIRED)
 add_executable(engine engine.c)
-target_link_libraries(engine PRIVATE bplbm::protocol m)
+target_link_libraries(engine PRIVATE bplbm::protocol)
 """
 
 
@@ -74,12 +74,21 @@ class Library(unittest.TestCase):
         config, = moved.rglob("bplbm.pc")
         flags = self.run_("pkg-config", "--cflags", "--libs", "bplbm",
                           env=dict(os.environ, PKG_CONFIG_PATH=str(config.parent))).stdout.split()
-        library, = moved.rglob("libbplbm_protocol.so")
-        self.run_("mpicc", source / "engine.c", *flags, f"-Wl,-rpath,{library.parent}", "-lm", "-o", self.folder / "other")
+        self.run_("mpicc", source / "engine.c", *flags, "-o", self.folder / "other")
         other = self.fall(self.folder / "other")
         moved.rename(self.prefix)
         self.assertEqual(self.fall(source / "build" / "engine"), other)
         self.prefix.rename(moved)
+
+    def test_installed_programs_find_the_library(self):
+        build, prefix = self.folder / "programs", self.folder / "with_programs"
+        self.run_("cmake", "-S", self.folder / "wire", "-B", build, "-DCMAKE_BUILD_TYPE=None")
+        self.run_("cmake", "--build", build, "--parallel", "2")
+        self.run_("cmake", "--install", build, "--prefix", prefix)
+        moved = prefix.rename(self.folder / "elsewhere")
+        bare = {name: value for name, value in ENVIRONMENT.items() if name != "LD_LIBRARY_PATH"}
+        for program in ("trace", "replay"):
+            self.assertIn("Usage", self.run_(moved / "bin" / program, "--help", env=bare).stdout)
 
     @unittest.skipUnless(shutil.which("gfortran"), "needs gfortran")
     def test_the_fortran_engine_is_a_project_of_its_own(self):

@@ -176,6 +176,27 @@ class Page(Output):
         self.assertRegex(text.getvalue(), r"run \| warning \| no page was made: .*; the run's numbers are complete\n")
 
 
+class Warnings(unittest.TestCase):
+    """What the logs warn of, in summary.json."""
+
+    def test_of_all_logs_come_once_with_the_name_of_their_log(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            (out / "summary.json").write_text('{"steps": 7}')
+            (out / "lbm.log").write_text("0 | plan | a step\n0 | warning | soft contact\n0 | warning | soft contact\n")
+            (out / "log.liggghts").write_text("no log of ours\n")
+            (out / "liggghts.log").write_text("WARNING: Old word (input.cpp:12)\nStep Atoms\n"
+                                              "liggghts | warning | Old word (at the line: pair_style old)\n"
+                                              "WARNING: Lost a grain (thermo.cpp:3)\n")
+            launcher.add_warnings(out)
+            summary = json.loads((out / "summary.json").read_text())
+        self.assertEqual(summary["steps"], 7)
+        self.assertEqual(sorted(summary["warnings"]), sorted([
+            "lbm.log: 0 | warning | soft contact",
+            "liggghts.log: liggghts | warning | Old word (at the line: pair_style old)",
+            "liggghts.log: WARNING: Lost a grain (thermo.cpp:3)"]))
+
+
 class Failed(Output):
     def failed_page(self):
         return write_failed_page(self.out, self.scene, [self.scene.file], ["sand"], ["mpirun", "lbm"], 3).read_text()

@@ -16,6 +16,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 from bplbm import new_scene, options  # noqa: E402
 from bplbm.project import CASES  # noqa: E402
+from bplbm.scene_words import drive_text  # noqa: E402
 from bplbm.scenes import Unknown, find, scenes  # noqa: E402
 
 SIX = list(itertools.product(new_scene.KINDS, (2, 3)))
@@ -97,6 +98,19 @@ class Overlays(InFolder):
         self.assertEqual([pathlib.Path(f).name for f in options.scene_files(args)], ["scene.toml", "variant-a.toml", "mine.toml"])
         self.assertEqual(options.label(args), "a_mine")
         self.assertIn("no such file", self.refusal("sand", "--overlay", "nothing.toml"))
+
+
+class Words(unittest.TestCase):
+    def test_each_shipped_scene_says_what_its_fluid_is(self):
+        for name in scenes():
+            file = CASES / name / "scene.toml"
+            if file.exists() and "fluid" in (scene := tomllib.loads(file.read_text())):
+                self.assertRegex(drive_text(scene), r"ρ = .* kg/m³, (ν = .* m²/s|.*K = )", name)
+
+    def test_a_law_is_named_with_its_numbers(self):
+        scene = {"box": {"size": [1, 1]}, "fluid": {"density": 1, "flow_rate": 2, "viscosity": {
+            "model": "herschel_bulkley", "consistency": 3, "index": 0.5, "yield_stress": 4}}}
+        self.assertEqual(drive_text(scene), "ρ = 1 kg/m³, herschel bulkley, K = 3 Pa sⁿ, n = 0.5, σ_y = 4 Pa\nflow 2 m³/s →")
 
 
 class New(InFolder):

@@ -1,5 +1,5 @@
 """The documents: every link leads somewhere, every citation is in the bibliography, every file that they name exists, no
-line of prose is wider than 120 characters, and every room opens with a short README."""
+line of prose is wider than 120 characters, every room opens with a short README, and that names the room's files."""
 
 import pathlib
 import re
@@ -15,6 +15,10 @@ ROOMS = ("lbm_solver", "liggghts_coupling", "protocol", "tools", "tests")
 # Folders that hold data of the room above, and READMEs that are a text of their own.
 DATA = re.compile(r"tests/(fuzz/corpus|unit/lbm_solver/pictures|hard/|support/stopped)|tools/bplbm/templates/|protocol/python/bplbm_solid")
 LONG = {"protocol/README.md", "protocol/python/README.md"}  # the text of the wire, and the page of a package
+# Rooms whose README names each of their files, but for those whose name says enough.
+NAMED = re.compile(r"(lbm_solver/\w+|liggghts_coupling/\w+|protocol/(wire|transport|program|solid)|"
+                   r"tests/(coupled|fuzz|performance|physics|sanitized|support))/[^/]+$")
+UNNAMED = {"README.md", "CMakeLists.txt", "LICENSE"}
 WRITTEN_BY_TOOLS = re.compile(r"cases/report/")
 TAG = re.compile(r"(?<![\w`])\[(?:after |see )?([A-Z]?[a-z]*[A-Z][A-Za-z]+(?:19|20)\d\d"
                  r"(?:, [A-Z][A-Za-z]+(?:19|20)\d\d)*)\](?!\()")
@@ -141,6 +145,17 @@ def rooms_without_readme():
             yield f"{name(readme)} has more than {LONGEST} lines"
 
 
+def unnamed_files():
+    """Files of a room that its README does not name."""
+    rooms = {path.parent for path in tracked("*.h", "*.cpp", "*.c", "*.py") if NAMED.match(name(path))}
+    for room in sorted(rooms):
+        text = (room / "README.md").read_text()
+        for path in sorted(tracked(name(room) + "/*")):
+            stem = path.name.split(".")[0]
+            if path.parent == room and path.name not in UNNAMED and not re.search(rf"\b{re.escape(stem)}\b", text):
+                yield f"{name(room)}/README.md does not say what {path.name} is"
+
+
 def complaints():
     known = set(re.findall(r"^- \*\*(\w+)\*\*", (ROOT / BIBLIOGRAPHY).read_text(), re.M))
     for path in tracked("*.md"):
@@ -150,6 +165,7 @@ def complaints():
         yield from lost_files(path, text)
     yield from unknown_citations(known)
     yield from rooms_without_readme()
+    yield from unnamed_files()
 
 
 def main():

@@ -1,4 +1,4 @@
-// The frames of the flow under their particles and bonds, by a slider, and speed or pressure by a button.
+// The frames of the flow under their particles and bonds, by a slider, and speed, pressure or viscosity by a button.
 (() => {
   const frames = JSON.parse(document.getElementById('flow-data').textContent).frames;
   const box = document.getElementById('flow'), image = box.querySelector('img'), drawing = box.querySelector('svg');

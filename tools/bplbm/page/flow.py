@@ -1,4 +1,4 @@
-"""The animation of a page: speed and pressure of the fluid, particles and bonds over it, moved by a slider."""
+"""The animation of a page: speed, pressure and viscosity of the fluid, particles and bonds over it, moved by a slider."""
 
 import json
 from dataclasses import dataclass
@@ -8,6 +8,7 @@ import numpy as np
 from bplbm.page.picture import HOT, MOST_MARKS, TWO_SIDED, Scale, chosen_frames, coarser, data_url, png
 
 UNITS = 1000  # of the drawing over a picture: along the longer side
+LABELS = {"speed": "speed [m/s]", "pressure": "pressure [Pa]", "viscosity": "log₁₀ of the viscosity [m²/s]"}
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,7 @@ class Plane:
     discs: np.ndarray  # [n][3]
     bonds: np.ndarray  # [n][5]: both ends, state
     fluid: tuple  # mean and largest speed [m/s]
+    viscosity: np.ndarray | None = None  # log₁₀ of it [m²/s], where the run has written it
 
 
 def cut(frame, size):
@@ -28,7 +30,14 @@ def cut(frame, size):
     speed, pressure = np.linalg.norm(read("velocity"), axis=-1), read("pressure")
     fluid = float(speed.mean()), float(speed.max())
     return Plane(frame.time, speed, pressure, discs_of(frame, size), bonds_of(frame) if len(size) == 2 else np.zeros((0, 5)),
-                 fluid)
+                 fluid, viscosity_of(read))
+
+
+def viscosity_of(read):
+    try:
+        return np.log10(read("viscosity"))
+    except (AttributeError, KeyError):
+        return None
 
 
 def discs_of(frame, size):
@@ -54,11 +63,15 @@ def bonds_of(frame):
 
 
 def scales(planes):
-    """Colours of speed and pressure for all frames alike; a few extreme cells, as in a first moment, do not count."""
+    """Colours of each field for all frames alike: dict of Scale; a few extreme cells, as in a first moment, do not count."""
     fast = max(float(np.nanmax(plane.speed)) for plane in planes)
     last = planes[len(planes) // 4:]  # the first pulse of pressure is none of the flow
     strong = max(float(np.nanpercentile(np.abs(p.pressure), 99.5)) if np.isfinite(p.pressure).any() else 0.0 for p in last)
-    return Scale(0.0, fast or 1.0, HOT), Scale(-(strong or 1.0), strong or 1.0, TWO_SIDED)
+    bars = {"speed": Scale(0.0, fast or 1.0, HOT), "pressure": Scale(-(strong or 1.0), strong or 1.0, TWO_SIDED)}
+    seen = [p.viscosity for p in planes if p.viscosity is not None and np.isfinite(p.viscosity).any()]
+    if seen:
+        bars["viscosity"] = Scale(min(float(np.nanmin(v)) for v in seen), max(float(np.nanmax(v)) for v in seen), HOT)
+    return bars
 
 
 def places(plane, origin, size):
@@ -98,34 +111,35 @@ def animation(run, planes):
     first = run.fields[0].coordinates
     half = p["cell"] / 2
     flat, origin = [size[0], size[-1]], [first["x"][0] - half, first["z" if len(size) == 3 else "y"][0] - half]
-    speed, pressure = scales(planes)
+    bars = scales(planes)
     entries = []
     for plane in planes:
         discs, bonds = places(plane, origin, flat)
-        entries.append({"t": f"{plane.time:.4g}",
-                        "speed": data_url(png(speed.indices(coarser(plane.speed))[::-1], speed.palette())),
-                        "pressure": data_url(png(pressure.indices(coarser(plane.pressure))[::-1], pressure.palette())),
-                        "p": discs, "b": bonds})
+        pictures = {kind: data_url(png(bar.indices(coarser(getattr(plane, kind)))[::-1], bar.palette()))
+                    for kind, bar in bars.items() if getattr(plane, kind) is not None}
+        entries.append({"t": f"{plane.time:.4g}", **pictures, "p": discs, "b": bonds})
     where = "" if len(size) == 2 else f"the plane y = {float(np.median(first['y'])):.3g} m, and the particles that it cuts · "
-    return frame_of(entries, flat, (speed, pressure), where)
+    return frame_of(entries, flat, bars, where)
 
 
 def frame_of(entries, flat, bars, where):
-    """The pictures' place in the page, with slider, buttons and colours. bars: scales of speed and pressure."""
+    """The pictures' place in the page, with slider, buttons and colours. bars: scale of each field."""
     ratio, last = flat[0] / flat[1], len(entries) - 1
     width, height = (UNITS * side / max(flat) for side in flat)
     shown = 560 * min(ratio, 1.9)  # pixels wide
     bonds = '; bonds: <span style="color:#2f8f4e">intact</span>, broken by <span style="color:#d62728">tension</span>, by ' \
             '<span style="color:#1f77b4">shear</span>' if any(e["b"] for e in entries) else ""
+    buttons = " ".join(f'<button data-kind="{kind}">{kind}</button>' for kind in bars)
+    colours = "".join(f'<div data-bar="{kind}"{"" if kind == "speed" else " hidden"}>{bar.bar(LABELS[kind])}</div>'
+                      for kind, bar in bars.items())
     return (f'<figure class="field" style="width:min(100%,{max(320, shown):.0f}px)">'
             f'<div id="flow" style="position:relative;aspect-ratio:{ratio:.4f};width:min(100%,{shown:.0f}px)">'
             f'<img alt="the fluid" src="{entries[-1]["speed"]}" style="position:absolute;inset:0;height:100%">'
             f'<svg viewBox="0 0 {width:.0f} {height:.0f}" preserveAspectRatio="none" '
             'style="position:absolute;inset:0;width:100%;height:100%"></svg></div>'
             f'<input id="flow-slide" type="range" min="0" max="{last}" value="{last}" aria-label="time">'
-            '<p style="margin:4px 0"><button id="flow-play">play</button> <button data-kind="speed">speed</button> '
-            '<button data-kind="pressure">pressure</button> <span id="flow-time" class="soft"></span></p>'
-            f'<div data-bar="speed">{bars[0].bar("speed [m/s]")}</div>'
-            f'<div data-bar="pressure" hidden>{bars[1].bar("pressure [Pa]")}</div>'
+            f'<p style="margin:4px 0"><button id="flow-play">play</button> {buttons} '
+            '<span id="flow-time" class="soft"></span></p>'
+            f"{colours}"
             f"<figcaption>{where}{flat[0]:.4g} m wide, {flat[1]:.4g} m high{bonds}; grey: no fluid</figcaption></figure>"
             f'<script id="flow-data" type="application/json">{json.dumps({"frames": entries})}</script>')

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 from bplbm.project import ROOT
 from bplbm.report.cases import array_run, step_of
-from bplbm.report.judges import (alike, at_most, breaks_alike, burst, carried, channel, drift, flat, jump, noise, noises, order,
-                           overshoot, rest, rises, same_way, street, told, warned)
+from bplbm.report.judges import (alike, at_most, breaks_alike, burst, carried, channel, drift, flat, gel_flow, held, jump, noise,
+                           noises, order, overshoot, rest, rises, same_way, street, told, warned)
 from bplbm.report.runs import merged
 
-BONDS = ROOT / "tests" / "hard"  # scenes that are hard cases and nothing else
+OWN = ROOT / "tests" / "hard"  # scenes that are hard cases and nothing else
 
 
 @dataclass
@@ -55,6 +55,19 @@ EACH = {"output": {"fields_every": 100.0, "probe_every": 1e-6}}  # step
 FREE = {"numerics": {"cells_per_diameter": 10, "solid_term": "auto", "collision": "auto"}}
 
 
+def gels():
+    """Laws of the viscosity."""
+    law = lambda **keys: {"fluid": {"viscosity": keys}}  # noqa: E731
+    yield Hard("gel, n = 0.3, whole force at once, τ 0.5 … 120", "bounded; flow within 2 %", OWN / "gel_channel", [{}],
+               gel_flow(0.01, 0.02), solids=False)
+    yield Hard("mud below its yield stress, from rest", "bounded; creeps as a fluid of nu_max, within 1 %", OWN / "gel_channel",
+               [law(yield_stress=0.8, shear_rate=40.0)], gel_flow(0.2373 * 0.003**2 / (12 * 2.4e-3), 0.01), solids=False)
+    yield Hard("gel, nu_max at τ 500", "refused", OWN / "gel_channel", [law(nu_max=0.01001)], solids=False)
+    yield Hard("gel, nu_min at τ - ½ = 5e-7", "refused", OWN / "gel_channel", [law(nu_min=1e-11)], solids=False)
+    yield Hard("a disc in mud, twice and a fifth of the critical yield stress", "held; falls", OWN / "held_disc",
+               [{}, law(yield_stress=0.0645)], held)
+
+
 def hard_cases(full):
     """Those that blow something up; in the full report also those that ask for a number alone."""
     yield Hard("cylinder Re 100, D/h 10, open channel", "bounded, or refused", "cylinder_flow",
@@ -85,6 +98,7 @@ def hard_cases(full):
                    "coupling": {"virtual_mass": 0.0}, "run": {"end_time": 10.0}}
         yield Hard(f"free disc, τ = {tau}, ρ_s/ρ_f {ratio:g}, no virtual mass", "told: what the default is for",
                    "couette_disc", [viscous], lambda runs: (None, "bounded"), solids=False)
+    yield from gels()
     yield Hard("pressure jump of 600 kPa into a packing", "overshoot < 10 %", "hydraulic_fracture",
                [{"output": {"fields_every": 2.5e-4, "probe_every": 1e-3}, "run": {"end_time": 0.003}}], overshoot,
                ("variant-cloud.toml",))
@@ -135,6 +149,6 @@ def hard_cases(full):
                [merged(FREE, {"particles": {"contact_stiffness": 200.0}, "coupling": {"substeps": n},
                               "output": {"fields_every": 100.0, "probe_every": 0.002}, "run": {"end_time": 0.5}})
                 for n in (1, 5, 15, 50)], alike)
-    yield Hard("a bond broken by the flow, 1, 5, 15, 50 substeps", "its time within 1 %", BONDS / "bond_in_flow",
+    yield Hard("a bond broken by the flow, 1, 5, 15, 50 substeps", "its time within 1 %", OWN / "bond_in_flow",
                [{"coupling": {"substeps": n}} for n in (1, 5, 15, 50)], breaks_alike)
-    yield Hard("a hundred bonds that break at once", "momentum to 1e-12, energy to 1 %", BONDS / "bond_burst", [{}], burst)
+    yield Hard("a hundred bonds that break at once", "momentum to 1e-12, energy to 1 %", OWN / "bond_burst", [{}], burst)

@@ -52,6 +52,25 @@ def rest(runs):
     return bool(speed <= 1e-10), f"{speed:.0e}"
 
 
+def gel_flow(mean, tolerance):
+    """Mean velocity [m/s] of a fluid alone in a channel at the end, within a part of it."""
+    def judge(runs):
+        run = runs[0]
+        error = run.frame(run.frames()[-1][1])["velocity"][..., 0].mean() / mean - 1
+        return bool(abs(error) <= tolerance), f"{100 * error:+.2g} %"
+    return judge
+
+
+def held(runs):
+    """A disc's speed at the end over that in a Newtonian fluid of nu_max, between walls ten diameters apart [Faxén 1946]: it creeps
+    so within 10 %. That of a second one, which nothing holds, over it: at least ten."""
+    first, second = (abs(run.probes()["vy"][-1]) for run in runs)
+    p, wide = runs[0].parameters, runs[0].parameters["box_x"] / runs[0].parameters["diameter"]
+    stress = (p["particle_density"] / p["density"] - 1) * -p["gravity_y"]
+    creep = stress * p["diameter"]**2 / (16 * 7.4e-3) * (np.log(wide) - 0.9157 + 1.7244 / wide**2)
+    return bool(abs(first / creep - 1) <= 0.1 and second >= 10 * first), f"{100 * (first / creep - 1):+.1f} % {second / first:.0f}×"
+
+
 def overshoot(runs):
     """Of the highest pressure over that of the inlet: 10 %."""
     run = runs[0]

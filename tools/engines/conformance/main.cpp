@@ -64,7 +64,8 @@ void print(const Check& check, const Outcome& outcome) {
              check.must);
   if (!good) fmt::print("{:25}wrong: {}\n", "", outcome.wrong);
   std::istringstream said(good ? "" : outcome.said);
-  for (std::string line; std::getline(said, line);) fmt::print("{:25}it said: {}\n", "", line);
+  for (std::string line; std::getline(said, line);)
+    if (line.find(outcome.wrong) == std::string::npos) fmt::print("{:25}it said: {}\n", "", line);
   std::fflush(stdout);
 }
 
@@ -102,7 +103,7 @@ int start(int argc, char** argv) {
       "[CHECK…] -- ENGINE…"};
   app.footer(list() +
              "The engine gets a box of 1 × 1 m and its discs as variables, as lbm offers them; "
-             "tools/engines/README.md says which.\n"
+             "tools/engines/conformance/README.md says which.\n"
              "Exit code: 0 all passed, 1 some failed, 2 a mistake in the command line.");
   app.add_option("CHECK", names, "checks to make, in this order; all where none is given");
   app.add_flag("--list", only_list, "the checks, and what an engine must do");

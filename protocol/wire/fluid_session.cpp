@@ -2,66 +2,16 @@
 #include "protocol/wire/session.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <numeric>
 #include <unordered_set>
 #include <utility>
 
-#include "protocol/wire/agreement.h"
-#include "protocol/wire/numbers.h"
-#include "protocol/wire/routing.h"
+#include "protocol/wire/session_parts.h"
 #include "protocol/wire/text.h"
 
 namespace protocol {
 namespace {
-
-/// Adds the life time of the object to `total`.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& total) : total_(total) {}
-  ~Stopwatch() {
-    total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// Both sides compute the disagreements and exchange them, so that both print the union.
-void settle(Channel& channel, const Hello& fluid, const Hello& solid, const Wait& wait) {
-  std::vector<std::string> reasons = disagreements(fluid, solid);
-  const Bytes answer = encode(Answer{reasons.empty(), reasons});
-  for (int r = 0; r < channel.remote_size(); ++r) channel.send(r, answer, wait);
-  for (int r = 0; r < channel.remote_size(); ++r)
-    for (const auto& reason : decode<Answer>(channel.receive(r, wait)).reasons)
-      if (std::find(reasons.begin(), reasons.end(), reason) == reasons.end())
-        reasons.push_back(reason);
-  if (!reasons.empty()) throw Refusal(reasons);
-}
-
-bool finite(const Vec3& v) {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
-[[noreturn]] void refuse_vector(std::int64_t id, const Vec3& value, const char* what,
-                                std::int64_t interval) {
-  throw BadMessage(format("particle {}: {} is ({}, {}, {}) at interval {}: not finite", id, what,
-                          value[0], value[1], value[2], interval),
-                   kNumerics);
-}
-
-/// @throws BadMessage where a vector of a record is not finite
-template <class Record>
-void expect_finite(const Record& record, const Vec3& value, const char* what,
-                   std::int64_t interval) {
-  if (!finite(value)) refuse_vector(record.id, value, what, interval);
-}
 
 [[noreturn]] void refuse_load(std::int64_t id, std::int64_t expected, std::int64_t interval) {
   throw ProtocolError(
@@ -69,34 +19,7 @@ void expect_finite(const Record& record, const Vec3& value, const char* what,
              interval));
 }
 
-[[noreturn]] void refuse_astray(const State& s, std::int64_t interval) {
-  throw ProtocolError(
-      format("particle {}: its centre ({:.6g}, {:.6g}, {:.6g}) m lies far outside of the box "
-             "at interval {}; correct its place, or delete it",
-             s.id, s.x[0], s.x[1], s.x[2], interval),
-      kBadInput);
-}
-
-/// What a fluid's scene says of the longest wait.
-double timeout_of(const Hello& fluid, double fallback) {
-  for (const Variable& v : fluid.variables)
-    if (v.name == "coupling_timeout") {
-      const auto seconds = to_number<double>(v.value);
-      if (seconds && *seconds > 0.0) return *seconds;
-    }
-  return fallback;
-}
-
-void expect_interval(const StepHeader& head, std::int64_t expected, const Channel& channel,
-                     int rank) {
-  if (head.interval != expected)
-    throw BadMessage(format("{} rank {} sent interval {} where {} was expected",
-                            channel.remote_name(), rank, head.interval, expected));
-}
-
 }  // namespace
-
-// ---- fluid ----------------------------------------------------------------------------------
 
 FluidSession::FluidSession(Channel& channel, Hello hello, double timeout)
     : channel_(channel),
@@ -261,7 +184,9 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
       throw BadMessage(
           format("particle {} came without radius and mass at interval {}", o.id, next_interval_));
     if (!present.emplace(o.id, shape->second).second)
-      throw BadMessage(format("particle {} came twice at interval {}", o.id, next_interval_));
+      throw BadMessage(format(
+          "particle {} came twice at interval {}: each solid rank gives only those that it owns",
+          o.id, next_interval_));
     order_[o.rank][o.record] = arrival_.particles.size();
     arrival_.particles.push_back({batches[o.rank].states[o.record], shape->second});
     ids_.push_back(o.id);
@@ -300,122 +225,6 @@ void FluidSession::answer(std::span<const Load> loads, std::uint32_t flags) {
     for (const std::size_t index : order_[r]) batch.loads.push_back(loads[index]);
     channel_.send(r, encode(batch), {timeout_, "it to take its loads"});
   }
-}
-
-// ---- solid ----------------------------------------------------------------------------------
-
-SolidSession::SolidSession(Channel& channel, double timeout)
-    : channel_(&channel),
-      timeout_(timeout),
-      told_(channel.remote_size()),
-      sent_(channel.remote_size()) {
-  const Stopwatch watch(waited_);
-  for (int r = 0; r < channel_->remote_size(); ++r) {
-    fluid_.push_back(decode<Hello>(channel_->receive(r, {timeout_, "its hello"})));
-    timeout_ = timeout_of(fluid_.back(), timeout_);
-  }
-}
-
-void SolidSession::agree(const Hello& hello) {
-  const Stopwatch watch(waited_);
-  for (int r = 0; r < channel_->remote_size(); ++r)
-    channel_->send(r, encode(hello), {timeout_, "it to take our hello"});
-  setting_ = {hello.step, hello.box_lo, hello.box_hi};
-  settle(*channel_, fluid_.front(), hello, {timeout_, "its answer to our hello"});
-}
-
-void SolidSession::send(const StepHeader& head, std::span<const State> states,
-                        std::span<const Shape> shapes, const std::optional<SolidReport>& report) {
-  const Stopwatch watch(waited_);
-  for (int r = 0; r < channel_->remote_size(); ++r)
-    send_states(r, head, states, shapes, r == 0 ? report : std::nullopt);
-  head_ = head;
-  loads_.assign(states.size(), Load{});
-  for (std::size_t i = 0; i < states.size(); ++i) loads_[i].id = states[i].id;
-}
-
-SolidSession::Reply SolidSession::collect() {
-  const Stopwatch watch(waited_);
-  Reply reply;
-  for (int r = 0; r < channel_->remote_size(); ++r) reply.flags |= add_loads(r);
-  reply.loads = loads_;
-  return reply;
-}
-
-SolidSession::Reply SolidSession::exchange(const StepHeader& head, std::span<const State> states,
-                                           std::span<const Shape> shapes,
-                                           const std::optional<SolidReport>& report) {
-  send(head, states, shapes, report);
-  if (head.flags & kLast) return {kContinue, loads_};
-  return collect();
-}
-
-void SolidSession::send_states(int rank, const StepHeader& head, std::span<const State> states,
-                               std::span<const Shape> shapes,
-                               const std::optional<SolidReport>& report) {
-  StateBatch batch{head, setting_, {}, {}, report};
-  batch.states.reserve(states.size());
-  std::vector<Shape>& told = told_[rank];
-  std::unordered_map<std::int64_t, Shape> others;  // told before; only where the order has changed
-  bool in_order = true;
-  const bool clumps = std::ranges::any_of(shapes, is_part);
-  const std::vector<std::size_t> by = clumps ? routed_by(shapes) : std::vector<std::size_t>();
-  sent_[rank].clear();
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const State& state = states[i];
-    const std::size_t whole = clumps ? by[i] : i;
-    if (!touches(fluid_[rank], states[whole].x, shapes[whole].radius)) {
-      if (astray(fluid_[rank], state.x)) refuse_astray(state, head.interval);
-      continue;
-    }
-    const std::size_t place = batch.states.size();
-    if (in_order && (place >= told.size() || told[place].id != state.id)) {
-      in_order = false;
-      for (std::size_t n = place; n < told.size(); ++n) others.emplace(told[n].id, told[n]);
-      told.resize(place);
-    }
-    if (!in_order) {
-      const auto known = others.find(state.id);
-      told.push_back(known == others.end() ? Shape{} : known->second);
-    }
-    if (std::memcmp(&told[place], &shapes[i], sizeof(Shape)) != 0) {
-      told[place] = shapes[i];
-      batch.shapes.push_back(shapes[i]);
-    }
-    batch.states.push_back(state);
-    sent_[rank].push_back(i);
-  }
-  told.resize(batch.states.size());
-  channel_->send(rank, encode(batch), {timeout_, "it to take our states"});
-}
-
-std::uint32_t SolidSession::add_loads(int rank) {
-  const StepHeader& head = head_;
-  const auto batch = decode<LoadBatch>(
-      channel_->receive(rank, {timeout_, format("the loads of interval {}", head.interval)}));
-  expect_interval(batch.head, head.interval, *channel_, rank);
-  if (batch.loads.size() != sent_[rank].size())
-    throw BadMessage(format("fluid rank {} answered {} loads for {} particles at interval {}", rank,
-                            batch.loads.size(), sent_[rank].size(), head.interval));
-  for (std::size_t i = 0; i < batch.loads.size(); ++i) {
-    const Load& part = batch.loads[i];
-    Load& sum = loads_[sent_[rank][i]];
-    if (part.id != sum.id)
-      throw BadMessage(format("fluid rank {} answered a load for particle {} in place of {}", rank,
-                              part.id, sum.id));
-    expect_finite(part, part.force, "hydrodynamic force", head.interval);
-    expect_finite(part, part.torque, "hydrodynamic torque", head.interval);
-    for (int k = 0; k < 3; ++k) {
-      sum.force[k] += part.force[k];
-      sum.torque[k] += part.torque[k];
-    }
-  }
-  return batch.head.flags;
-}
-
-void SolidSession::goodbye(const std::string& reason) {
-  for (int r = 0; r < channel_->remote_size(); ++r)
-    channel_->send(r, encode(Goodbye{reason}), {timeout_, "it to take our goodbye"});
 }
 
 }  // namespace protocol

@@ -1,0 +1,156 @@
+"""Results and pictures of proppant_in_gel. Usage: plot.py OUT_FOLDER (tools/run calls it)."""
+
+import sys
+from dataclasses import dataclass
+
+import matplotlib.pyplot as plt
+import numpy as np
+from bplbm import Run, draw_slice, quantity, read_table, result, studies
+
+NEWTONIAN = "fluid-newtonian"
+FLUIDS = {"": (1.0, 0.5), NEWTONIAN: (0.0966, 1.0)}  # consistency [Pa sⁿ], index
+DEVELOPED = 0.25  # part of the run before the means begin
+PROFILE_TOLERANCE, CARRIED_TOLERANCE, SETTLING_TOLERANCE = 0.05, 0.05, 0.25
+
+
+@dataclass
+class Slot:
+    """Gel alone between walls at ±w/2 with a mean velocity: u = U (2n+1)/(n+1) (1 - |2y/w|^(1+1/n))."""
+
+    consistency: float
+    index: float
+    width: float
+    mean: float
+
+    def velocity(self, y):
+        n = self.index
+        return self.mean * (2 * n + 1) / (n + 1) * (1 - np.abs(2 * y / self.width) ** (1 + 1 / n))
+
+    def shear_rate(self, y):
+        n = self.index
+        return self.mean * (2 * n + 1) / n * 2 / self.width * np.abs(2 * y / self.width) ** (1 / n)
+
+    def pressure_gradient(self):
+        n = self.index
+        return 2 / self.width * self.consistency * (self.mean * (2 * n + 1) / n * 2 / self.width) ** n
+
+    def over_grain(self, y, diameter, value):
+        """Mean of value(y) over the volume of a grain."""
+        t, w = np.polynomial.legendre.leggauss(12)
+        weight = w * (1 - t**2) / np.sum(w * (1 - t**2))
+        places = np.clip(np.asarray(y)[..., None] + 0.5 * diameter * t, -0.5 * self.width, 0.5 * self.width)
+        return (value(places) * weight).sum(-1)
+
+    def settling(self, y, diameter, stress):
+        """Stokes' velocity with the viscosity at the shear rate of the slot and of the fall, V/D, together [Novotny 1977].
+        stress: Δρ g D [Pa]."""
+        slot = self.over_grain(y, diameter, self.shear_rate)
+        v = np.full_like(slot, 1e-6)
+        for _ in range(200):
+            viscosity = self.consistency * np.hypot(slot, v / diameter) ** (self.index - 1)
+            v = 0.5 * (v + stress * diameter / (18 * viscosity))
+        return v
+
+
+def history(run):
+    """Rows of the grains after the flow has developed, y from the middle, with the mixture's vertical velocity."""
+    table, p = read_table(run.folder / "probes.csv"), run.parameters
+    late = table["time"] > DEVELOPED * table["time"].max()
+    rows = {name: column[late] for name, column in table.items()}
+    rows["y"] = rows["y"] - 0.5 * p["box_y"]
+    frames = [(frame.time, float(frame.velocity[..., 2].mean())) for frame in run.fields]
+    rows["fall"] = np.interp(rows["time"], *np.transpose(frames)) - rows["vz"]
+    return rows
+
+
+@dataclass
+class Transport:
+    """What a run shows."""
+
+    slot: Slot
+    y: np.ndarray  # of the layers of cells
+    profile: np.ndarray  # mean velocity of fluid and grains in them
+    grains: dict
+    carried: float  # mean velocity of the grains over that of the gel at their places
+    carried_exact: float
+    fall: float  # mean velocity of settling [m/s]
+    novotny: float  # the same, by Stokes' law with the local viscosity
+
+
+def transport(run, name):
+    p = run.parameters
+    frames = [frame for frame in run.fields if frame.time > DEVELOPED * run.summary["physical_seconds"]]
+    profile = np.mean([np.asarray(frame.velocity)[..., 0].mean(axis=(0, 2)) for frame in frames], axis=0)
+    y = (np.arange(len(profile)) + 0.5) * p["cell"] - 0.5 * p["box_y"]
+    slot = Slot(*FLUIDS[name], p["box_y"], profile.mean())
+    grains, d = history(run), p["diameter"]
+    stress = (p["particle_density"] - p["density"]) * -p["gravity_z"] * d
+    return Transport(slot, y, profile, grains, grains["vx"].mean(),
+                     slot.over_grain(grains["y"], d, slot.velocity).mean(), grains["fall"].mean(),
+                     slot.settling(grains["y"], d, stress).mean())
+
+
+def judged(found):
+    results = []
+    for name, t in found.items():
+        what = "gel" if name == "" else "Newtonian"
+        error = np.sqrt(np.mean((t.profile - t.slot.velocity(t.y)) ** 2)) / t.slot.mean
+        results += [result(f"{what}: rms error of the profile", error, "1", 0.0,
+                           "power law alone, over the mean velocity", PROFILE_TOLERANCE, scale=1.0),
+                    result(f"{what}: speed of the grains", t.carried, "m/s", t.carried_exact,
+                           "of the gel alone, over each grain's volume", CARRIED_TOLERANCE)]
+    if NEWTONIAN in found:
+        gel, other = found[""], found[NEWTONIAN]
+        results.append(result("settling in gel over that in the Newtonian fluid", gel.fall / other.fall, "1",
+                              gel.novotny / other.novotny,
+                              "Stokes with the viscosity at both shear rates, Novotny 1977", SETTLING_TOLERANCE))
+    return results
+
+
+def quantities(found, run):
+    rows = []
+    for name, t in found.items():
+        what = "gel" if name == "" else "Newtonian"
+        rows += [quantity(f"{what}: mean velocity of the flow", t.slot.mean, "m/s"),
+                 quantity(f"{what}: pressure gradient of the fluid alone at that flow", t.slot.pressure_gradient(), "Pa/m"),
+                 quantity(f"{what}: speed of the grains over the mean", t.carried / t.slot.mean, "1"),
+                 quantity(f"{what}: settling", t.fall, "m/s"),
+                 quantity(f"{what}: settling by Stokes' law with the local viscosity, one grain", t.novotny, "m/s")]
+    return rows + [quantity("grains", len(np.unique(found[""].grains["id"])), "1")]
+
+
+def picture(found, run):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(8.4, 3.4))
+    diameter = run.parameters["diameter"]
+    for color, (name, t) in zip(("C0", "C1"), found.items(), strict=False):
+        what = "gel, n = 0.5" if name == "" else "Newtonian"
+        left.plot(t.y * 1e3, t.slot.velocity(t.y), color=color, label=f"{what}, exact")
+        left.plot(t.y * 1e3, t.profile, ".", ms=3, color=color, label=f"{what}, with grains")
+        places = np.array([[t.grains[c][t.grains["id"] == i].mean() for c in ("y", "fall")] for i in np.unique(t.grains["id"])])
+        right.plot(places[:, 0] * 1e3, places[:, 1] * 1e3, "o", ms=4, mfc="none", color=color, label=what)
+        p, line = run.parameters, np.linspace(-0.5, 0.5, 81) * (run.parameters["box_y"] - diameter)
+        stress = (p["particle_density"] - p["density"]) * -p["gravity_z"] * diameter
+        right.plot(line * 1e3, t.slot.settling(line, diameter, stress) * 1e3, color=color, lw=0.9)
+    for ax, name in ((left, "velocity along the slot [m/s]"), (right, "settling [mm/s]")):
+        ax.set_xlabel("y from the middle [mm]")
+        ax.set_ylabel(name)
+        ax.set_ylim(bottom=0)
+    left.legend(fontsize=8)
+    right.legend(fontsize=8, title="lines: one grain, Stokes\nwith the local viscosity", title_fontsize=7)
+    figure.tight_layout()
+    run.save(figure, "transport.png")
+
+
+def main():
+    run = Run(sys.argv[1])
+    own = "" if run.summary.get("variant", "") in ("", "resolved") else run.summary["variant"]
+    found = {own: transport(run, own), **{name: transport(r, name) for name, r in studies(run).items() if name in FLUIDS}}
+    run.write_results(judged(found), quantities({"": found.get("", found[own]), **found}, run))
+    picture(found, run)
+    figure, ax = plt.subplots(figsize=(4.4, 4.0))
+    draw_slice(ax, run, run.frames()[-1][1], "z", length_unit=1e-3)
+    run.save(figure, "field.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+/// Flows that are held, velocities along a side and the viscosity among the fields, as a scene
+/// gives them: what is refused, and what becomes of the rest.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/scene_reader.h"
+#include "lbm_solver/solver/plan.h"
+#include "lbm_solver/solver/viscosity_use.h"
+#include "lbm_solver/viscosity/viscosity_law.h"
+#include "tests/unit/lbm_solver/scene_files.h"
+
+namespace {
+
+using namespace lbm;
+
+std::string slot(const std::string& fluid, const std::string& rest = "",
+                 const std::string& sides = "sides_x = \"periodic\"") {
+  return "[box]\nsize = [0.02, 0.01]\n" + sides +
+         "\n[fluid]\ndensity = 1000.0\nvelocity_scale = 0.02\n" + fluid +
+         "\n[numerics]\ncell = 0.0005\n[run]\nend_time = 0.1\n" + rest;
+}
+const std::string kWater = "kinematic_viscosity = 1e-5\n";
+
+std::string inlet(const std::string& keys) {
+  return "[[boundary]]\nside = \"left\"\nkind = \"velocity\"\nvelocity = [0.01, 0.0]\n" + keys +
+         "\n[[boundary]]\nside = \"right\"\nkind = \"pressure\"\n";
+}
+
+struct Refused {
+  std::string name, scene;
+  std::vector<std::string> words;
+};
+void PrintTo(const Refused& r, std::ostream* out) {
+  *out << r.name;
+}
+
+class BadDrive : public testing::TestWithParam<Refused> {};
+
+TEST_P(BadDrive, IsNamedWithReasonAndRemedy) {
+  const test::TemporaryFolder folder;
+  folder.write("words.csv", "y,factor\n0,one\n");
+  folder.write("twice.csv", "y,factor\n0,1\n0,2\n");
+  folder.write("one.csv", "y,factor\n0,1\n");
+  folder.write("gaps.csv", "y,z,factor\n0,0,1\n0.01,0,1\n0.01,0.01,1\n");
+  folder.write("across.csv", "x,factor\n0,1\n1,1\n");
+  try {
+    make_plan(read_scene({folder.write("scene.toml", GetParam().scene)}));
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    const std::string text = e.what();
+    EXPECT_NE(text.find("; "), std::string::npos) << "no remedy in: " << text;
+    for (const auto& word : GetParam().words) EXPECT_NE(text.find(word), std::string::npos) << text;
+  }
+}
+
+const std::string kWalls = "sides_x = \"wall\"";
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadDrive,
+    testing::Values(
+        Refused{"flow_across_walls",
+                slot(kWater + "flow_rate = 1e-4\nflow_axis = \"y\"\n"),
+                {"fluid.flow_rate", "sides_y are walls: nothing can flow there", "periodic"}},
+        Refused{"flow_and_force",
+                slot(kWater + "flow_rate = 1e-4\nbody_force = [1.0, 0.0]\n"),
+                {"fluid.flow_rate", "fluid.body_force", "and finds the force itself", "leave one"}},
+        Refused{"flow_and_jump",
+                slot(kWater + "flow_rate = 1e-4\n", "",
+                     "sides_x = \"periodic\"\npressure_jump = [1.0, 0.0]"),
+                {"fluid.flow_rate", "box.pressure_jump", "leave one"}},
+        Refused{"ramp_of_no_flow", slot(kWater + "flow_ramp = 1.0\n"), {"flow_ramp", "flow_rate"}},
+        Refused{"flow_too_fast",
+                slot(kWater + "flow_rate = 0.1\n"),
+                {"fluid.flow_rate", "velocity_scale"}},
+        Refused{"profile_absent",
+                slot(kWater, inlet("profile_table = \"none.csv\""), kWalls),
+                {"profile_table", "none.csv", "beside the scene"}},
+        Refused{"profile_of_words",
+                slot(kWater, inlet("profile_table = \"words.csv\""), kWalls),
+                {"line 2", "2 finite numbers"}},
+        Refused{"profile_of_one_place_twice",
+                slot(kWater, inlet("profile_table = \"twice.csv\""), kWalls),
+                {"line 3", "place of an earlier line"}},
+        Refused{"profile_of_one_place",
+                slot(kWater, inlet("profile_table = \"one.csv\""), kWalls),
+                {"fewer than two places"}},
+        Refused{"profile_with_gaps",
+                "[box]\nsize = [0.02, 0.01, 0.01]\n[fluid]\ndensity = 1000.0\nvelocity_scale = "
+                "0.02\nkinematic_viscosity = 1e-5\n[numerics]\ncell = 0.001\n[run]\nend_time = "
+                "0.1\n[[boundary]]\nside = \"left\"\nkind = \"velocity\"\nvelocity = [0.01, 0.0, "
+                "0.0]\nprofile_table = \"gaps.csv\"\n",
+                {"3 lines, and 2 × 2 places along its axes", "every place"}},
+        Refused{"profile_of_another_axis",
+                slot(kWater, inlet("profile_table = \"across.csv\""), kWalls),
+                {"begins with 'x,factor'", "y,factor"}},
+        Refused{"profile_and_parabola",
+                slot(kWater, inlet("profile = \"parabolic\"\nprofile_table = \"one.csv\""), kWalls),
+                {"profile_table"}}),
+    [](const auto& info) { return info.param.name; });
+
+// A parabola from a table of 81 lines, against the one that a scene can name: chords are lower by
+// 4 (1/80)²/4 of the middle.
+TEST(SideProfile, FromATableIsTheParabola) {
+  const test::TemporaryFolder folder;
+  std::string table = "y,factor\n";
+  for (int i = 80; i >= 0; --i) {  // lines come in any order
+    const double s = i / 80.0;
+    table += std::to_string(0.01 * s) + "," + std::to_string(4.0 * s * (1.0 - s)) + "\n";
+  }
+  folder.write("inlet.csv", table);
+  const auto fluid_of = [&](const std::string& keys) {
+    const Scene scene = read_scene({folder.write("scene.toml", slot(kWater, inlet(keys), kWalls))});
+    const Plan plan = make_plan(scene);
+    EXPECT_TRUE(plan.warnings.empty()) << plan.warnings.front();
+    Fluid fluid = make_fluid(scene, plan, Decomposition(plan.domain));
+    fluid.advance(200);
+    return fluid;
+  };
+  const Fluid named = fluid_of("profile = \"parabolic\""),
+              read = fluid_of("profile_table = \"inlet.csv\"");
+  const double middle = named.cell(1, 10).u.x();
+  EXPECT_GT(middle, 0.0);
+  for (int y = 0; y < 20; ++y)
+    EXPECT_NEAR(read.cell(1, y).u.x(), named.cell(1, y).u.x(), 5e-4 * middle) << y;
+}
+
+TEST(SideProfile, LiesOnAGridOfTwoAxes) {
+  const SideProfile profile{{{{0.0, 2.0}, {1.0, 3.0, 4.0}}}, {1.0, 3.0, 5.0, 7.0, 0.0, 0.0}};
+  EXPECT_DOUBLE_EQ(profile.factor({0.0, 1.0}), 1.0);
+  EXPECT_DOUBLE_EQ(profile.factor({2.0, 3.0}), 7.0);
+  EXPECT_DOUBLE_EQ(profile.factor({1.0, 2.0}), 4.0);
+  EXPECT_DOUBLE_EQ(profile.factor({-5.0, 9.0}), 0.0);
+  EXPECT_DOUBLE_EQ(profile.factor({0.5, 0.0}), 1.5);
+  const SideProfile second{{{{}, {0.0, 10.0}}}, {0.0, 1.0}};
+  EXPECT_DOUBLE_EQ(second.factor({7.0, 2.5}), 0.25);
+}
+
+// What the fields show is what cells collide with: in uniform shear the law at its rate.
+TEST(ShownViscosity, IsThatOfTheLaw) {
+  const test::TemporaryFolder folder;
+  const std::string plates =
+      "[[boundary]]\nside = \"top\"\nkind = \"moving_wall\"\nvelocity = [0.01, 0.0]\n"
+      "[output]\nviscosity = true\n";
+  const Scene scene = read_scene({folder.write(
+      "scene.toml", slot("viscosity = {model = \"power_law\", consistency = 0.5, index = 0.5, "
+                         "shear_rate = 1.0}\n",
+                         plates))});
+  EXPECT_TRUE(scene.output.viscosity);
+  const Plan plan = make_plan(scene);
+  Fluid fluid = make_fluid(scene, plan, Decomposition(plan.domain));
+  fluid.advance(4000);
+  std::vector<double> nu(static_cast<std::size_t>(plan.domain.nx));
+  const double unit = plan.units.dx * plan.units.dx / plan.units.dt;
+  for (int y = 0; y < plan.domain.ny; ++y) {
+    row_viscosity(fluid, plan.kernel.parameters, y, 0, nu);
+    EXPECT_NEAR(nu[3] * unit / 5e-4, 1.0, 0.005) << y;  // (K/ρ) γ̇^(n-1) at 1/s
+  }
+}
+
+}  // namespace
