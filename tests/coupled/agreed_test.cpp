@@ -277,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "diameters"},
         std::pair{"grow", "particle 4: diameter 0.005 m at interval 3"},
         std::pair{"dense", "particle 4: density 2500 kg/m³ at interval 3"},
-        std::pair{"clump", "particle 4 is a sphere of clump 1, but has a mass of "}),
+        std::pair{"clump", "particle 4 is a sphere of clump 1, which this rank does not send"}),
     [](const auto& info) { return info.param.first; });
 
 // ---- an id that passes to another particle

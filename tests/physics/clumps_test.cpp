@@ -295,7 +295,8 @@ double falling_speed(const std::vector<FreeClump::Part>& parts, double density, 
   Particles wire = clump_coupling(fluid, kTerm, virtual_mass, gravity);
   fluid.set_body_force({0.0, weight / (1.0 * n * n * n), 0.0});
   for (int k = 0; k < steps; ++k) clump.step(wire, fluid, gravity);
-  return -clump.velocity.y();
+  return momentum(fluid).y() / (1.0 * n * n * n) + 0.5 * fluid.body_force().y() -
+         clump.velocity.y();
 }
 
 TEST(Clump, ThatIsLightRisesAsAHeavyOneFalls) {
