@@ -46,7 +46,7 @@ class StoppedRunTest : public testing::Test {
   }
   JobResult run(const std::string& out, const std::string& options = "", Ranks ranks = {}) const {
     const auto start = std::chrono::steady_clock::now();
-    const JobResult result = test::run(job(out, options, ranks), folder_.path(), 60.0);
+    const JobResult result = test::run(job(out, options, ranks), folder_.path(), 300.0);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     if (out == "whole") whole_seconds_ = seconds.count();
     return result;
@@ -128,7 +128,7 @@ void StoppedRunTest::stop_often(const std::string& out, int times, unsigned seed
             ") & job=$!; for k in $(seq 200); do pgrep -P $job > /dev/null && break; sleep 0.02; "
             "done; sleep " +
             std::to_string(moment(random)) + "; " + stops[trial % 4] + "; wait $job",
-        folder_.path(), 60.0);
+        folder_.path(), 300.0);
     ASSERT_FALSE(cut.timed_out) << cut.output;
     ASSERT_EQ(cut.output.find("damaged"), std::string::npos) << trial << cut.output;
     ASSERT_EQ(cut.output.find("is missing"), std::string::npos) << trial << cut.output;
