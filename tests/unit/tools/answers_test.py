@@ -12,7 +12,8 @@ LISTS = {"build": "release", "compare": "", "draw_setup": "settling_disc", "fuzz
          "new": "bonded", "sweep": "settling_disc",
          "report": "stability", "run": "settling_disc", "test": "coupled"}
 
-NEEDED = {"make_packing": "--out x --box 0 1 0 1 --diameter 0.1 0.2".split()}  # without which it says so first
+# Without these a tool says first that they are missing.
+NEEDED = {"make_clump": ("none.stl", "3"), "make_packing": "--out x --box 0 1 0 1 --diameter 0.1 0.2".split()}
 
 
 def answer(tool, *words):
