@@ -69,12 +69,13 @@ class CheckpointTest : public testing::Test {
 };
 
 // Bonds that break, walls with friction, two ranks: all that a restart file must hold.
-TEST_F(CheckpointTest, ABreakingBlockGoesOnToTheBit) {
-  for (const char* schedule : {"serial", "overlapped"}) {
+class BreakingBlock : public CheckpointTest {
+ protected:
+  void expect_to_the_bit(const std::string& schedule) {
     use("hydraulic_fracture",
         "[run]\nend_time = 0.006\ncheckpoint_every = 0.001\n[output]\nprobe_every = 1e-4\n"
         "fields_every = 0.002\n[coupling]\nschedule = \"" +
-            std::string(schedule) + "\"\n");
+            schedule + "\"\n");
     expect_ok(run("whole", "", 2));
     expect_ok(run("parts", "--until 0.0052", 2));
     const JobResult rest = run("parts", "--restart", 2);
@@ -85,6 +86,13 @@ TEST_F(CheckpointTest, ABreakingBlockGoesOnToTheBit) {
     EXPECT_GT(file("whole/breaks.csv").size(), 200U);  // something broke
     EXPECT_EQ(solid_checkpoints("parts").size(), 3U);
   }
+};
+
+TEST_F(BreakingBlock, OverlappedGoesOnToTheBit) {
+  expect_to_the_bit("overlapped");
+}
+TEST_F(BreakingBlock, Slow_SerialGoesOnToTheBit) {
+  expect_to_the_bit("serial");
 }
 
 TEST_F(CheckpointTest, ASignalEndsBothWithACheckpoint) {
