@@ -8,12 +8,14 @@
 
 #include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/solver/fluid.h"
+#include "tests/support/flux.h"
 #include "tests/support/meshes.h"
 
 namespace {
 
 using namespace lbm;
 using std::numbers::pi;
+using test::flux;
 
 KernelChoice choice(int dimension, double tau, const Vec3& force = Vec3()) {
   KernelChoice c{.force = force.norm() > 0.0,
@@ -34,15 +36,6 @@ MeshSolid solid(TriangleMesh mesh, bool hollow = false) {
 /// A block in two dimensions.
 MeshSolid block(const Vec3& low, const Vec3& high) {
   return solid(test::box_mesh({low.x(), low.y(), -1.0}, {high.x(), high.y(), 2.0}));
-}
-
-Vec3 flux(const Fluid& fluid) {
-  const Domain& d = fluid.domain();
-  Vec3 sum = Vec3::Zero();
-  for (int z = 0; z < d.nz; ++z)
-    for (int y = 0; y < d.ny; ++y)
-      for (int x = 0; x < d.nx; ++x) sum += fluid.arrived_momentum(x, y, z);
-  return sum / (1.0 * d.nx * d.ny * d.nz);
 }
 
 /// Flux that a body force drives past a block in a periodic box, seen from a frame in which the

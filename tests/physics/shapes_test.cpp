@@ -9,12 +9,14 @@
 #include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/solver/fluid.h"
 #include "tests/support/array_references.h"
+#include "tests/support/flux.h"
 #include "tests/support/meshes.h"
 
 namespace {
 
 using namespace lbm;
 using std::numbers::pi;
+using test::flux;
 
 constexpr double kTau = 1.0;
 
@@ -32,15 +34,6 @@ KernelChoice choice(const char* lattice, const Vec3& force) {
 
 Geometry of(TriangleMesh mesh, bool hollow = false) {
   return {MeshSolid{std::make_shared<const TriangleMesh>(std::move(mesh)), hollow}};
-}
-
-Vec3 flux(const Fluid& fluid) {
-  const Domain& d = fluid.domain();
-  Vec3 sum = Vec3::Zero();
-  for (int z = 0; z < d.nz; ++z)
-    for (int y = 0; y < d.ny; ++y)
-      for (int x = 0; x < d.nx; ++x) sum += fluid.arrived_momentum(x, y, z);
-  return sum / (1.0 * d.nx * d.ny * d.nz);
 }
 
 /// Drag F/(μ U) of one solid in a periodic box, by its load and the flux.
