@@ -215,7 +215,7 @@ TEST_F(CheckpointTest, Slow_KilledTwentyTimesItAlwaysGoesOn) {
   const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - start;
   std::mt19937 random(7);
   // So long that most trials get to a checkpoint, and so short that none gets to the end.
-  std::uniform_real_distribution<double> moment(0.05 * whole.count(), 0.12 * whole.count());
+  std::uniform_real_distribution<double> moment(0.025 * whole.count(), 0.06 * whole.count());
   for (int trial = 0; trial < 20; ++trial) {
     const bool first = !std::filesystem::exists(folder_.path() + "/parts/checkpoint.h5");
     const char* victim = trial % 3 == 0 ? "lbm" : trial % 3 == 1 ? "liggghts" : "mpirun";
