@@ -180,6 +180,8 @@ TEST(MovingWall, ADrumTakesItsFluidAlong) {
       100.0 * (impulse / gain - 1.0), spin().second, last_torque / first_torque);
   EXPECT_NEAR(impulse / gain, 1.0, 0.02);
   EXPECT_NEAR(spin().second, 1.0, 0.002);
+  // 6.7 % is left, where a closed drum in rest outside should leave less than 0.5 %. Drag of the
+  // fluid outside is suspected and not measured: until it is, this holds only that it dies away.
   EXPECT_LT(std::abs(last_torque / first_torque), 0.1);
 }
 

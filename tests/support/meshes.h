@@ -44,13 +44,7 @@ inline TriangleMesh sphere_mesh(const Vec3& centre, double radius, int rounds) {
 
 /// The box between two corners.
 inline TriangleMesh box_mesh(const Vec3& low, const Vec3& high) {
-  TriangleMesh mesh;
-  for (unsigned k = 0; k < 8; ++k)
-    mesh.vertices.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(),
-                               k & 4 ? high.z() : low.z());
-  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return mesh;
+  return lbm::box_surface(low, high);
 }
 
 /// A straight cylinder with flat ends.
