@@ -184,9 +184,7 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
                             ? scene.coupling->timeout
                             : protocol::seconds_from_environment("BPLBM_TIMEOUT", kAloneSeconds));
   check_until(scene, o.run);
-  int rank = 0;
-  MPI_Comm_rank(world.local, &rank);
-  std::optional<Restart> restart = find_restart(scene, o.run.out, o.run.restart, rank == 0);
+  std::optional<Restart> restart = find_restart(scene, o.run.out, o.run.restart);
   const Plan plan = make_plan(scene, restart ? std::optional(restart->step) : std::nullopt);
   if (restart) check_same_scene(*restart, scene, plan, o.run.restart);
   const Decomposition ranks = divide(o, scene, plan, world.local);
