@@ -276,7 +276,7 @@ TEST_F(Clumps, TurnByTheTorqueOfTheirLoads) {
 
 // Through the open side below: one clump of two spheres, which counts once.
 TEST_F(Clumps, ThatLeaveAnOpenBoxCountOnce) {
-  const std::string scene = test::replaced(heavy(2500), "end_time = 0.05", "end_time = 0.025") +
+  const std::string scene = test::replaced(heavy(2500), "end_time = 0.05", "end_time = 0.04") +
                             "[[boundary]]\nside = \"back\"\nkind = \"pressure\"\n";
   const std::string in_box = test::replaced(
       test::replaced(kScript, "BODIES", multisphere("2500", "0. 0. -0.15")),
