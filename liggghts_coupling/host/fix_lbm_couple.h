@@ -77,8 +77,8 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
   std::optional<protocol::SolidReport> report() const override;
   int index_of(std::int64_t id) const override;
   std::vector<protocol::EngineClump> clumps() override { return clumps_.clumps(); }
-  void push_clumps(std::span<const protocol::Load> loads, bool at_end) override {
-    clumps_.push(loads, at_end);
+  void push_clumps(std::span<const protocol::Load> loads, protocol::Moment when) override {
+    clumps_.push(loads, when);
   }
   void set_up_again() override;
   void write_part(protocol::SolidParts& parts, std::int64_t interval) override;

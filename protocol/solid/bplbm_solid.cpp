@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <memory>
@@ -75,6 +77,25 @@ void catch_free_signals() {
   struct sigaction term {};
   sigaction(SIGTERM, nullptr, &term);
   if (term.sa_handler == SIG_DFL) catch_signals();
+}
+
+/// Handles that bplbm_close has not had, and who the first of them is of.
+int open_handles = 0;
+std::string first_program;
+
+/// At the end of the process, where nobody could say it to the fluid.
+void complain_of_open_handles() {
+  if (open_handles > 0)
+    std::fprintf(
+        stderr,
+        "%s | error | it ends without bplbm_close, so the fluid has to find out that nobody "
+        "answers; call bplbm_close on every way out, and return what it returns\n",
+        first_program.c_str());
+}
+
+void count_handle(const std::string& program) {
+  static const int registered = std::atexit(complain_of_open_handles);
+  if (registered == 0 && open_handles++ == 0) first_program = program;
 }
 
 bplbm_setup setup_of(const Hello& fluid) {
@@ -234,6 +255,7 @@ int bplbm_connect(bplbm_solid** solid, const char* program, const char* version)
     bplbm_solid& s = **solid;
     s.program = program ? program : "solid";
     s.version = version ? version : "";
+    count_handle(s.program);
     int initialised = 0;
     MPI_Initialized(&initialised);
     if (!initialised) MPI_Init(nullptr, nullptr);
@@ -349,6 +371,7 @@ MPI_Fint bplbm_communicator_f(const bplbm_solid* solid) {
 int bplbm_close(bplbm_solid* solid) {
   const std::unique_ptr<bplbm_solid> owned(solid);
   if (!solid) return kFault;
+  if (open_handles > 0) --open_handles;
   const bool in_order = !solid->failure || part(*solid);
   int initialised = 0, finalised = 0;
   MPI_Initialized(&initialised);

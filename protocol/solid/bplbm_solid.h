@@ -25,7 +25,8 @@
  * enough to look at the last one; bplbm_close tells the fluid why. The library keeps no state
  * outside of the handle but what belongs to the process: MPI, the handlers of SIGTERM and SIGINT
  * (where there were none) and the watch, which ends a process whose wait for its own ranks exceeds
- * the scene's time-out (BPLBM_WATCH=0 in the environment leaves it out). */
+ * the scene's time-out (BPLBM_WATCH=0 in the environment leaves it out), and a handler of exit that
+ * complains of handles that bplbm_close has not had. */
 #ifndef BPLBM_SOLID_H
 #define BPLBM_SOLID_H
 

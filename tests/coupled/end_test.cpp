@@ -94,8 +94,11 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
              stage->lacking;
     // The library answers for its process, so the fluid knows that it does nothing any more.
     const bool asked = peer == kC && how == "finalize" && stage->exit_code == 0;
+    // The C interface says by itself that it was not closed; behind MPI_Finalize mpirun shows
+    // nothing more.
     if (how == "exit")
-      expect_end(result.get(), 1, {});
+      expect_end(result.get(), 1,
+                 {peer == kC ? "leaving_solid | error | it ends without bplbm_close" : ""});
     else if (asked)
       expect_end(result.get(), 1, {said, "solid rank 0 did not end within 2 s, and did nothing"});
     else
