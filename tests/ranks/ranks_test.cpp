@@ -222,6 +222,7 @@ TEST(Ranks, GoOnFromAStateOfAnotherGrid) {
   const auto make = [&](const Decomposition& ranks) {
     Fluid fluid(ranks, choice);
     add_patches(fluid);
+    add_movers(fluid);
     fluid.place(bodies_in(domain));
     return fluid;
   };
