@@ -18,6 +18,7 @@
 #include "lbm_solver/io/scene_keys.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "protocol/program/command_line.h"
+#include "protocol/program/mpi_start.h"
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 #include "protocol/transport/mpi_channel.h"
@@ -235,8 +236,11 @@ int main(int argc, char** argv) {
       return protocol::exit_code_of(error);
     }
 
-  int level = 0;
-  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
+  {
+    const protocol::MpiStart bounded("lbm", connect_timeout_in(options.scene));
+    int level = 0;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
+  }
   protocol::catch_signals();
   std::unique_ptr<protocol::Channel> channel;
   protocol::World world;

@@ -166,6 +166,7 @@ class CoupledRun {
         break;
       }
       if (arrival.head.flags & protocol::kCheckpoint) write_checkpoint(interval);
+      stop_wished_ = arrival.head.flags & protocol::kStopWished;
       const bool last = arrival.head.flags & protocol::kLast;
       // a frame may find the disk full: until it is written both still stand at this interval
       if (times_.any() && observers_.draws_at(interval))
@@ -237,7 +238,7 @@ class CoupledRun {
   /// What the solid is told with the loads of an interval.
   std::uint32_t flags_after(std::int64_t interval) {
     const std::int64_t next = interval + 1;
-    const bool signalled = protocol::signalled() && times_.stop(next);
+    const bool signalled = (protocol::signalled() || stop_wished_) && times_.stop(next);
     const bool stop = next >= end_ || signalled;
     std::uint32_t flags = stop ? protocol::kStop : protocol::kContinue;
     if (stop || observers_.draws_at(next)) flags |= protocol::kWantBonds;
@@ -305,7 +306,8 @@ class CoupledRun {
   Observers observers_;
   const std::int64_t end_;
   const StopTimes times_;
-  bool keep_last_;  // the fluid's part that lies there is good
+  bool stop_wished_ = false;  // the solid was told to end
+  bool keep_last_;            // the fluid's part that lies there is good
   std::optional<std::int64_t> stands_at_ = start_.interval;  // no part of an interval is done
   Vec3 carried_ = Vec3::Zero();   // weight of the particles in the fluid [N]
   std::optional<Record> memory_;  // of particles_ before those of stands_at_ arrived

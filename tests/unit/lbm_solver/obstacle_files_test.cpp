@@ -194,6 +194,8 @@ TEST_F(ObstacleFiles, ABadImageIsDescribed) {
   refused(3, raw + "at = [0.006, 0, 0]", {"takes cells 6 … 10 along x, the box has 8"});
   refused(3, raw + "cut_to = [5, 3, 2]", {"nothing lies between 0 and 5 in x"});
   refused(3, test::replaced(raw, "voxel = 0.001", "voxel = 0.0015"), {"is 1.5 cells"});
+  for (const char* voxel : {"voxel = 5e-30", "voxel = 5e-300", "voxel = 1e30"})
+    refused(3, test::replaced(raw, "voxel = 0.001", voxel), {"cells", "10000 at most"});
   refused(3, test::replaced(raw, "voxel = 0.001", "voxel = 0.0005"),
           {"has 3 voxels along y, and 2 of them make a cell"});
   refused(3, raw + "[[obstacle]]\nimage = \"rock.jpg\"\nvoxel = 1\nthreshold = 1", {"rock.jpg"});
