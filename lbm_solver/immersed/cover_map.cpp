@@ -10,6 +10,7 @@
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/immersed/clump_cover.h"
 #include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/immersed/mapped_radius.h"
 #include "lbm_solver/immersed/moving_shape.h"
 
 namespace lbm {
@@ -48,6 +49,7 @@ struct CoverMap::Mover {
   std::vector<std::size_t> places;  // in the index, of each block
   std::vector<CoverBlock> far;      // of a drum what faces out: no part of its load
   std::vector<std::size_t> far_places;
+  Vec3 off;  // from the pivot to the place on the grid that arms begin at
 };
 
 CoverMap::CoverMap(const Domain& domain, const Block& cells, const RadiusShift& shift)
@@ -70,7 +72,7 @@ class Clumps {
     if (std::ranges::none_of(bodies, [](const Body& b) { return b.carrier != 0; })) return;
     for (std::size_t d = 0; d < bodies.size(); ++d) {
       mapped_.push_back(bodies[d]);
-      mapped_.back().radius = shift.radius(bodies[d].radius, bodies[d].hollow);
+      mapped_.back().radius = mapped_radius(shift, bodies[d].radius, bodies[d].hollow);
       if (bodies[d].carrier != 0) members_[bodies[d].carrier].push_back(d);
     }
   }
@@ -131,7 +133,7 @@ void CoverMap::update(std::span<const Body> bodies) {
   for (std::ptrdiff_t d = 0; d < n; ++d) {
     motions_[first + d] = {bodies[d].velocity, bodies[d].spin};
     Body mapped = bodies[d];
-    mapped.radius = shift_.radius(mapped.radius, mapped.hollow);
+    mapped.radius = mapped_radius(shift_, mapped.radius, mapped.hollow);
     change[d] = footprints_[d].look(mapped, domain_, cells_);
     if (change[d] == Footprint::Change::Fractions && bodies[d].carrier == 0) footprints_[d].write();
     other_spans = other_spans || change[d] == Footprint::Change::Spans;
@@ -164,7 +166,7 @@ void CoverMap::add(const Geometry& geometry) {
 void CoverMap::add(std::unique_ptr<MovingShape> shape) {
   BPLBM_EXPECT(footprints_.empty());
   fixed_.emplace_back();
-  movers_.push_back({std::move(shape), fixed_.size() - 1, {}, {}, {}});
+  movers_.push_back({std::move(shape), fixed_.size() - 1, {}, {}, {}, {}});
   motions_.resize(1 + movers_.size());
 }
 
@@ -172,8 +174,11 @@ void CoverMap::move(std::span<const Pose> poses) {
   BPLBM_EXPECT(poses.size() == movers_.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {
     Mover& mover = movers_[k];
-    motions_[1 + k] = {poses[k].velocity, poses[k].spin};
-    if (!mover.shape->look(poses[k])) continue;
+    const bool other = mover.shape->look(poses[k]);
+    mover.off = mover.shape->centre() - poses[k].centre();
+    if (d_ == 2) mover.off.z() = 0.0;
+    motions_[1 + k] = {poses[k].velocity + poses[k].spin.cross(mover.off), poses[k].spin};
+    if (!other) continue;
     std::vector<CoverBlock>& blocks = fixed_[mover.blocks];
     for (std::size_t i = 0; i < blocks.size(); ++i) unlink(mover.places[i], blocks[i]);
     for (std::size_t i = 0; i < mover.far.size(); ++i) unlink(mover.far_places[i], mover.far[i]);
@@ -344,6 +349,10 @@ std::vector<BodyLoad> CoverMap::fixed_loads() const {
   std::vector<BodyLoad> result;
   for (const auto& blocks : fixed_)
     result.push_back(d_ == 2 ? load_of<2>(blocks) : load_of<3>(blocks));
+  for (const Mover& mover : movers_) {
+    BodyLoad& load = result[mover.blocks];
+    load.torque += mover.off.cross(load.force);
+  }
   return result;
 }
 

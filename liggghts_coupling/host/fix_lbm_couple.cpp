@@ -110,7 +110,7 @@ void FixLbmCouple::setup(int) {
     begin();
   else
     go_on();
-  coupling_->add_loads();
+  coupling_->add_loads(protocol::Moment::SetUp);
 }
 
 void FixLbmCouple::begin() {

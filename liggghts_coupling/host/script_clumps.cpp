@@ -60,15 +60,20 @@ void add(double* sum, const Vec3& part) {
 void ScriptClumps::find() {
   multisphere_ = nullptr;
   rigid_.clear();
+  set_up_before_.clear();
+  bool passed = false;  // fix lbm/couple
   for (int i = 0; i < modify->nfix; ++i) {
     LAMMPS_NS::Fix& fix = *modify->fix[i];
     if (std::string(fix.style) == "multisphere")
       multisphere_ = dynamic_cast<LAMMPS_NS::FixMultisphere*>(&fix);
+    passed = passed || std::string(fix.style) == "lbm/couple";
     auto* const rigid = dynamic_cast<FixRigid*>(&fix);
     if (!rigid) continue;
     int overlap = ScriptChecks(lmp).joins_overlapping(fix.groupbit) ? 1 : 0;
     MPI_Allreduce(MPI_IN_PLACE, &overlap, 1, MPI_INT, MPI_MAX, world);
-    if (overlap) rigid_.push_back(rigid);
+    if (!overlap) continue;
+    rigid_.push_back(rigid);
+    set_up_before_.push_back(!passed);
   }
 }
 
@@ -139,7 +144,7 @@ void ScriptClumps::add_rigid(std::size_t number, std::vector<EngineClump>& clump
 
 /// What is added to a body of fix multisphere between its pre_force and its final_integrate, it
 /// takes together with the forces on its spheres.
-void ScriptClumps::push(std::span<const protocol::Load> loads, bool at_end) {
+void ScriptClumps::push(std::span<const protocol::Load> loads, protocol::Moment when) {
   const auto load_of = [&](std::int64_t id) -> const protocol::Load* {
     const auto at = std::lower_bound(
         loads.begin(), loads.end(), id,
@@ -156,14 +161,16 @@ void ScriptClumps::push(std::span<const protocol::Load> loads, bool at_end) {
         add(torque[b], load->torque);
       }
   }
-  for (std::size_t n = 0; n < rigid_.size(); ++n) push_rigid(n, loads, at_end);
+  using protocol::Moment;
+  for (std::size_t n = 0; n < rigid_.size(); ++n)
+    push_rigid(n, loads, when == Moment::End || (when == Moment::SetUp && set_up_before_[n]));
 }
 
 /// A fix rigid adds up the forces on its spheres: the load of a body goes in equal parts to those,
 /// each with the torque that makes the sum right. What acts in the next first half-step it keeps
-/// itself, on every rank.
+/// itself, on every rank, from its last sum.
 void ScriptClumps::push_rigid(std::size_t number, std::span<const protocol::Load> loads,
-                              bool at_end) {
+                              bool to_bodies) {
   const FixRigid& fix = *rigid_[number];
   const int bodies = (fix.*Inside::count);
   std::vector<const protocol::Load*> of_body(bodies, nullptr);
@@ -171,7 +178,7 @@ void ScriptClumps::push_rigid(std::size_t number, std::span<const protocol::Load
     const std::int64_t body = rigid_id(number, 0) - load.id;
     if (body >= 0 && body < bodies) of_body[body] = &load;
   }
-  if (at_end) {
+  if (to_bodies) {
     for (int b = 0; b < bodies; ++b) {
       if (!of_body[b]) continue;
       add((fix.*Inside::force)[b], of_body[b]->force);

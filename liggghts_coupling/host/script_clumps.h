@@ -35,16 +35,17 @@ class ScriptClumps : protected LAMMPS_NS::Pointers {
   bool in_part(int groupbit) const;
   /// Those that this rank answers for.
   std::vector<protocol::EngineClump> clumps() const;
-  /// Adds loads of all ranks' clumps. @param at_end  see protocol::Engine::push_clumps
-  void push(std::span<const protocol::Load> loads, bool at_end);
+  /// Adds loads of all ranks' clumps.
+  void push(std::span<const protocol::Load> loads, protocol::Moment when);
 
  private:
   void add_multisphere(std::vector<protocol::EngineClump>& clumps) const;
   void add_rigid(std::size_t number, std::vector<protocol::EngineClump>& clumps) const;
-  void push_rigid(std::size_t number, std::span<const protocol::Load> loads, bool at_end);
+  void push_rigid(std::size_t number, std::span<const protocol::Load> loads, bool to_bodies);
 
   LAMMPS_NS::FixMultisphere* multisphere_ = nullptr;
   std::vector<LAMMPS_NS::FixRigid*> rigid_;
+  std::vector<bool> set_up_before_;  // of each fix rigid: it stands before fix lbm/couple
   mutable std::vector<std::int64_t> carriers_;  // of the last call
 };
 

@@ -25,7 +25,8 @@
  * enough to look at the last one; bplbm_close tells the fluid why. The library keeps no state
  * outside of the handle but what belongs to the process: MPI, the handlers of SIGTERM and SIGINT
  * (where there were none) and the watch, which ends a process whose wait for its own ranks exceeds
- * the scene's time-out (BPLBM_WATCH=0 in the environment leaves it out). */
+ * the scene's time-out (BPLBM_WATCH=0 in the environment leaves it out), and a handler of exit that
+ * complains of handles that bplbm_close has not had. */
 #ifndef BPLBM_SOLID_H
 #define BPLBM_SOLID_H
 
@@ -166,8 +167,8 @@ int bplbm_report(bplbm_solid* solid, int64_t left, const int64_t counts[5], int6
  * bplbm_close next. (Without a goodbye the fluid ends with exit code 1, naming this program.) */
 int bplbm_goodbye(bplbm_solid* solid, const char* reason);
 
-/* Says that this program cannot go on, and why; the fluid prints it. Returns `code`, which must be
- * another than BPLBM_OK. Call bplbm_close next. */
+/* Says that this program cannot go on, and why; the fluid prints it. Returns `code`, from 1 to
+ * 255; any other counts as BPLBM_FAULT. Call bplbm_close next. */
 int bplbm_fail(bplbm_solid* solid, int code, const char* reason);
 
 /* The ranks of this program. MPI_COMM_WORLD contains those of the fluid as well: never use it for a

@@ -28,6 +28,13 @@ struct EngineClump {
   int spheres = 0;
 };
 
+/// When loads are added to clumps.
+enum class Moment {
+  SetUp,  ///< of a run: to the forces that act in its first half-step
+  Step,   ///< to the forces of the step that is computed
+  End     ///< of a step: to the forces that are still there and act in the next first half-step
+};
+
 /// A sphere of a clump, on the rank that holds it.
 struct EngineSphere {
   std::int64_t id = 0, carrier = 0, type = 1;

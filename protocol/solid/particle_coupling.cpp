@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "protocol/program/program.h"
 #include "protocol/wire/clumps.h"
 
 namespace protocol {
@@ -68,9 +69,9 @@ bool is_part(const EngineParticles& p, int i) {
 
 }  // namespace
 
-void ParticleCoupling::add_loads() {
+void ParticleCoupling::add_loads(Moment when) {
   const EngineParticles p = engine_.particles();
-  if (any_clumps_) engine_.push_clumps(clumps_.loads(), false);
+  if (any_clumps_) engine_.push_clumps(clumps_.loads(), when);
   for (int i = 0; i < p.count; ++i) {
     if (!(p.mask[i] & p.group) || is_part(p, i)) continue;
     for (int k = 0; k < 3; ++k) {
@@ -135,6 +136,7 @@ void ParticleCoupling::send_states(std::uint32_t flags) {
   gather(engine_.particles());
   const double interval = now.step * substeps_;
   if (stop_asked_) flags |= kLast;
+  if (signalled()) flags |= kStopWished;
   session_.set(now);
   session_.send({interval_, static_cast<double>(interval_) * interval, flags}, states_, shapes_,
                 engine_.report());
@@ -203,7 +205,7 @@ void ParticleCoupling::take_clump_loads(std::span<const Load> loads, bool add_ch
   for (std::size_t n = 0; n < local_.size(); ++n)
     if (local_[n] == kClump) mine.push_back(loads[n]);
   const std::vector<Load> changes = clumps_.take(engine_.communicator(), mine);
-  if (add_change) engine_.push_clumps(changes, true);
+  if (add_change) engine_.push_clumps(changes, Moment::End);
 }
 
 /// Brings loads to the ranks that own their particles now.

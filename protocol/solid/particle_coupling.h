@@ -65,9 +65,8 @@ class Engine {
   /// The clumps that this rank answers for; those of all ranks are all clumps that the carriers of
   /// `particles` name.
   virtual std::vector<EngineClump> clumps() { return {}; }
-  /// Adds loads to clumps, those of all ranks: to the forces of the step that is computed, or, at
-  /// the end of one, to those that are still there and act in the next first half-step.
-  virtual void push_clumps(std::span<const Load> /*loads*/, bool /*at_end*/) {}
+  /// Adds loads to clumps, those of all ranks.
+  virtual void push_clumps(std::span<const Load> /*loads*/, Moment /*when*/) {}
   /// Index of the particle of an id, which is one of `particles` where it is below their number.
   virtual int index_of(std::int64_t id) const = 0;
   /// Does in the middle of a run what its beginning does: sorts and distributes particles, finds
@@ -94,8 +93,8 @@ class ParticleCoupling {
   /// At the end of `Engine::set_up_again`: writes the part of a checkpoint that was asked for,
   /// sends the states.
   void resume();
-  /// Adds the loads that are held to forces and torques.
-  void add_loads();
+  /// Adds the loads that are held to forces and torques. @param when  set-up or step
+  void add_loads(Moment when = Moment::Step);
   /// After each step; exchanges at the end of an interval.
   void end_step();
 

@@ -19,6 +19,7 @@ std::string command(const std::string& engine) {
   const std::string script = kEngines + "conformance/in." + engine + " -screen none -log none";
   if (engine == "liggghts") return test::kLiggghts + " -in " + script;
   if (engine == "lammps") return test::kBin + "/lammps_engine -in " + script;
+  if (engine == "clumps") return kPython + kEngines + "python/clump_engine.py";
   if (engine == "reference" || engine == "c" || engine == "fortran")
     return test::kBin + "/" + engine + "_engine";
   return kPython + kEngines + engine + "/engine.py";
@@ -67,6 +68,14 @@ INSTANTIATE_TEST_SUITE_P(All, EngineOfManyRanks,
                          testing::Values("liggghts", "lammps", "python", "c"),
                          [](const auto& info) { return info.param; });
 
+class EngineOfClumps : public EngineTest {};
+TEST_P(EngineOfClumps, MovesThemAsOneBody) {
+  judge("clump");
+  judge("clump --fluid-ranks 2");
+}
+INSTANTIATE_TEST_SUITE_P(All, EngineOfClumps, testing::Values("liggghts", "reference", "clumps"),
+                         [](const auto& info) { return info.param; });
+
 // ---- the judge ----------------------------------------------------------------------------------
 
 /// What an engine does wrong (tests/support/bad_engine.py), the check that must find it, and what
@@ -100,6 +109,10 @@ const Sin kSins[] = {
     {"hasty_end", "end_late", "it ended before it could be judged"},
     {"stubborn", "end_refused", "does not say farewell within 6 s after a refusal"},
     {"fault_is_farewell", "end_fault", "it does not end within 8 s"},
+    {"unit_depth", "clump", "1 of 1 records are no parts of a clump"},
+    {"overlap_counted_twice", "clump", "density"},
+    {"ball_of_a_clump", "clump", "inertia of the union"},
+    {"no_turn_of_discs", "clump", "speed x of its disc"},
     {"deaf", "end_left", "does not say farewell within 6 s after the fluid's own"},
 };
 

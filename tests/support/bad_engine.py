@@ -15,7 +15,7 @@ from bplbm_solid import checkpoints, frames, routing  # noqa: E402
 from bplbm_solid.channel import Channel  # noqa: E402
 from mpi4py import MPI  # noqa: E402
 
-Solid = bplbm_solid.Solid
+Solid, Clump = bplbm_solid.Solid, bplbm_solid.Clump
 exchange, number, vector, disc = Solid.exchange, Solid.number, Solid.vector, bplbm_solid.disc
 receive, await_farewells, hear = Channel.receive, Channel.await_farewells, Channel._hear
 encode_states, decode_handshake, decode_loads = frames.encode_states, frames.decode_handshake, frames.decode_loads
@@ -161,6 +161,37 @@ def fault_is_farewell():
     Channel._hear = misheard
 
 
+def overlap_counted_twice():
+    made = Clump.__init__
+
+    def heavy(self, *words, **more):
+        made(self, *words, **more)
+        discs = self.shapes["radius"][1:]
+        self.mass = self.shapes["mass"][0] = 1000.0 * np.pi * (discs ** 2).sum()
+    Clump.__init__ = heavy
+
+
+def no_turn_of_discs():
+    Clump.states = property(lambda self, states=Clump.states: straight(states.fget(self)))
+
+
+def straight(states):
+    states["v"] = states["v"][0]
+    return states
+
+
+def ball_of_a_clump():
+    made = Clump.__init__
+
+    def hollow(self, *words, **more):
+        made(self, *words, **more)
+        self.inertia *= 1.2
+        self.shapes["inertia"] *= 1.2
+    Clump.__init__ = hollow
+
+
+ENGINES = {sin: "clump_engine.py" for sin in ("overlap_counted_twice", "no_turn_of_discs", "ball_of_a_clump")}
+engine = ENGINES.get(sys.argv[1], "engine.py")
 globals()[sys.argv[1]]()
-sys.argv = ["engine.py"]
-runpy.run_path(str(ROOT / "tools" / "engines" / "python" / "engine.py"), run_name="__main__")
+sys.argv = [engine]
+runpy.run_path(str(ROOT / "tools" / "engines" / "python" / engine), run_name="__main__")

@@ -11,6 +11,7 @@
 
 #include "protocol/program/program.h"
 #include "protocol/wire/codec.h"
+#include "tools/engines/conformance/clump_check.h"
 
 namespace conformance {
 
@@ -324,6 +325,8 @@ const Check kChecks[] = {
     {"epoch", "one disc out, another in: a new id, or the old one with another epoch", 0, 1, epoch},
     {"ranks", "two fluid ranks: each gets what touches it, the loads of both are added", 0, 2,
      ranks},
+    {"clump", "clumps move as one body of the union's mass; for an engine that has them", 0, 1,
+     clump, true},
     {"stop", "the states after a stop are flagged as the last", 0, 1, stop},
     {"checkpoint", "writes P.k.solid and says so when asked, not unasked", 0, 1, checkpoint},
     {"version", "another protocol version is refused", 2, 1, version},

@@ -20,6 +20,7 @@ struct Check {
   int exit_code;     ///< of the job
   int fluid_ranks;   ///< at least
   void (*run)(Judge&);
+  bool optional = false;  ///< made only where it is named
 };
 
 std::span<const Check> checks();

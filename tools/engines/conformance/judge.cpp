@@ -54,6 +54,16 @@ void offer_discs(const std::vector<Start>& discs, Offer& offer) {
   }
 }
 
+void offer_clump(const Scene& scene, Offer& offer) {
+  const UnionMoments whole = scene.clumps ? scene.clump() : UnionMoments{};
+  const double mass = scene.density * whole.volume;
+  offer("clump_mass", mass);
+  offer("clump_inertia", mass * (whole.second[0] + whole.second[1]));
+  if (!scene.clumps) return;
+  const auto disc = [](const double(&d)[3]) { return fmt::format("{},{},0,{}", d[0], d[1], d[2]); };
+  offer.text("clump", disc(kClump[0]) + ":" + disc(kClump[1]));
+}
+
 }  // namespace
 
 void expect(bool good, const std::string& what) {
@@ -73,6 +83,12 @@ Load pushed(int k, const Particle& p) {
 
 double Scene::mass() const {
   return density * std::numbers::pi * kRadius * kRadius * depth;
+}
+
+UnionMoments Scene::clump() const {
+  std::vector<Ball> discs;
+  for (const auto& [x, y, radius] : kClump) discs.push_back({.x = {x, y, 0.0}, .radius = radius});
+  return moments_of_union(discs, 2, depth);
 }
 
 Judge::Judge(Channel& channel, MPI_Comm local, std::string folder)
@@ -120,6 +136,7 @@ Hello Judge::hello(const Scene& scene) const {
   offer.text("out_folder", folder_);
   offer.text("restart_file", "none");
   offer_discs(scene.discs, offer);
+  offer_clump(scene, offer);
   return h;
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/wire/ball_union.h"
 #include "protocol/wire/channel.h"
 #include "protocol/wire/session.h"
 
@@ -39,6 +40,9 @@ void expect_passes(Way&& way) {
   }
 }
 
+/// Of two discs, x, y and radius about its centre [m].
+inline constexpr double kClump[2][3] = {{-0.03, 0.0, kRadius}, {0.03, 0.0, kRadius}};
+
 /// A disc, and from when until when it is in the box.
 struct Start {
   double x, y, vx = 0.0, vy = 0.0;
@@ -48,12 +52,14 @@ struct Start {
 /// What the scene of a check is.
 struct Scene {
   std::vector<Start> discs{{0.3, 0.5}};
+  bool clumps = false;  ///< of each disc a clump, see kClump
   bool periodic = false;
   double density = 1000.0;  ///< [kg/m³]
   double depth = 1.0;       ///< [m]
   double timeout = 20.0;    ///< that is offered to the engine [s]
   double mass() const;      ///< of a disc [kg]
   double inertia() const { return 0.5 * mass() * kRadius * kRadius; }
+  protocol::UnionMoments clump() const;  ///< what the discs of a clump fill together
 };
 
 class Judge {

@@ -1,21 +1,28 @@
 // SPDX-License-Identifier: MIT
-/// A small solid program: soft discs with linear springs and dashpots, on one rank. Everything that
-/// it needs comes as variables of the fluid's scene; it has no input file.
+/// A small solid program: soft discs with linear springs and dashpots, alone or as equal clumps, on
+/// one rank. Everything that it needs comes as variables of the fluid's scene; it has no input
+/// file.
 ///
 ///   F_n = k δ - γ v_n,  γ = 2 ξ √(m k), between discs and with walls; velocity Verlet, in which
 ///   the load of an interval acts in each of its substeps, its first half-step included.
+///
+/// The variable `clump`, "x,y,z,r:x,y,z,r…" in metres about any point, makes one of each particle.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <sstream>
 
 #include "protocol/program/program.h"
 #include "protocol/program/solid_parts.h"
 #include "protocol/program/watch.h"
 #include "protocol/transport/mpi_channel.h"
+#include "protocol/wire/ball_union.h"
+#include "protocol/wire/clumps.h"
 #include "protocol/wire/codec.h"
 #include "protocol/wire/numbers.h"
 #include "protocol/wire/session.h"
@@ -46,6 +53,7 @@ class Offer {
     return values_.contains(name) ? number(name) : otherwise;
   }
   std::string text(const std::string& name) const { return values_.at(name); }
+  bool has(const std::string& name) const { return values_.contains(name); }
 
  private:
   std::map<std::string, std::string> values_;
@@ -70,7 +78,9 @@ class Discs {
     const double radius = 0.5 * offer.number("diameter_max");
     const double mass =
         offer.number("density_max") * std::numbers::pi * radius * radius * offer.number("depth");
-    shape_ = {0, radius, mass, 0.5 * mass * radius * radius, 1};
+    shapes_of_one_ = {{0, radius, mass, 0.5 * mass * radius * radius, 1}};
+    arms_ = {Vec3{}};
+    if (offer.has("clump")) make_clump(offer.text("clump"));
     step_ = offer.number("solid_step");
     stiffness_ = offer.number_or("contact_stiffness", 1e5);
     damping_ = 2.0 * offer.number_or("damping_ratio", 0.5) * std::sqrt(mass * stiffness_);
@@ -91,14 +101,14 @@ class Discs {
       if (offer_.number_or(p + "until", -1.0) == interval) remove(id);
       if (offer_.number_or(p + "interval", 0.0) != interval) continue;
       State s;
-      s.id = id;
       s.x = {offer_.number(p + "x"), offer_.number(p + "y"), 0.0};
       s.v = {offer_.number_or(p + "vx", 0.0), offer_.number_or(p + "vy", 0.0), 0.0};
-      states.push_back(s);
-      shapes.push_back(shape_);
-      shapes.back().id = id;
-      shapes.back().epoch = interval;
+      add(id, s, interval);
     }
+  }
+  /// Discs and clumps, without the discs of clumps.
+  std::int64_t bodies() const {
+    return std::ranges::count_if(shapes, [](const Shape& s) { return !is_part(s); });
   }
 
   /// A checkpoint is a frame of states, as it would go to the fluid.
@@ -121,24 +131,17 @@ class Discs {
 
   /// Some steps under one load each; what leaves an open box is gone.
   void advance(std::uint32_t steps, std::span<const Load> loads) {
-    std::vector<Vec3> acceleration = accelerations(loads);
+    std::vector<Acceleration> acceleration = accelerations(loads);
     for (std::uint32_t n = 0; n < steps; ++n) {
-      for (std::size_t i = 0; i < states.size(); ++i)
-        for (int k = 0; k < 2; ++k) {
-          states[i].v[k] += 0.5 * step_ * acceleration[i][k];
-          states[i].x[k] += step_ * states[i].v[k];
-        }
+      kick(acceleration);
+      drift();
       acceleration = accelerations(loads);
-      for (std::size_t i = 0; i < states.size(); ++i) {
-        for (int k = 0; k < 2; ++k) states[i].v[k] += 0.5 * step_ * acceleration[i][k];
-        states[i].omega[2] += step_ * loads[i].torque[2] / shapes[i].inertia;
-      }
+      kick(acceleration);
     }
-    for (std::size_t i = states.size(); i-- > 0;)
-      if (!put_into_box(states[i])) {
-        states.erase(states.begin() + static_cast<std::ptrdiff_t>(i));
-        shapes.erase(shapes.begin() + static_cast<std::ptrdiff_t>(i));
-      }
+    std::vector<std::int64_t> gone;
+    for (std::size_t i = 0; i < states.size(); ++i)
+      if (!put_into_box(states[i]) && !is_part(shapes[i])) gone.push_back(shapes[i].id);
+    for (const std::int64_t id : gone) remove(id);
   }
 
   const Box& box() const { return box_; }
@@ -148,9 +151,105 @@ class Discs {
   std::vector<Shape> shapes;
 
  private:
+  struct Acceleration {
+    Vec3 of_place{};    ///< [m/s²]
+    double spin = 0.0;  ///< [rad/s²]
+  };
+
+  /// Discs in the frame of their clump, whose centre is that of their union.
+  void make_clump(std::string text) {
+    std::vector<Ball> balls;
+    for (char& c : text)
+      if (c == ',' || c == ':') c = ' ';
+    std::istringstream numbers(text);
+    for (Ball b; numbers >> b.x[0] >> b.x[1] >> b.x[2] >> b.radius;) balls.push_back(b);
+    if (balls.empty() || !numbers.eof())
+      throw ProgramError("the variable 'clump' = '" + offer_.text("clump") +
+                             "' is no list of x,y,z,r:x,y,z,r…; correct [particles.variables]",
+                         kBadInput);
+    const double depth = offer_.number("depth");
+    const Vec3 centre = moments_of_union(balls, 2, depth).centroid;
+    for (Ball& b : balls)
+      for (int k = 0; k < 2; ++k) b.x[k] -= centre[k];
+    const UnionMoments moments = moments_of_union(balls, 2, depth);
+    Shape body = shapes_of_one_[0];
+    body.radius = bounding_radius(balls);
+    body.volume = moments.volume;
+    body.mass = offer_.number("density_max") * moments.volume;
+    body.inertia = body.mass * (moments.second[0] + moments.second[1]);
+    shapes_of_one_ = {body};
+    for (const Ball& b : balls) {
+      shapes_of_one_.push_back({0, b.radius, 0.0, 0.0, 1});
+      arms_.push_back(b.x);
+    }
+  }
+
+  /// A disc, or a clump and its discs.
+  void add(std::int64_t id, const State& centre, int interval) {
+    for (std::size_t j = 0; j < arms_.size(); ++j) {
+      states.push_back(centre);
+      shapes.push_back(shapes_of_one_[j]);
+      states.back().id = shapes.back().id = id + 1'000'000 * static_cast<std::int64_t>(j);
+      shapes.back().epoch = interval;
+      if (j > 0) shapes.back().carrier = id;
+      for (int k = 0; k < 2; ++k) states.back().x[k] += arms_[j][k];
+    }
+  }
   void remove(std::int64_t id) {
-    std::erase_if(states, [id](const State& s) { return s.id == id; });
-    std::erase_if(shapes, [id](const Shape& s) { return s.id == id; });
+    std::erase_if(shapes, [id](const Shape& s) { return s.id == id || s.carrier == id; });
+    std::erase_if(states, [&](const State& s) {
+      return std::ranges::none_of(shapes, [&](const Shape& kept) { return kept.id == s.id; });
+    });
+  }
+
+  /// Of each record the one with which it moves: itself, or its clump's, which stands before it.
+  std::vector<std::size_t> movers() const {
+    std::vector<std::size_t> all(shapes.size());
+    for (std::size_t i = 0, body = 0; i < all.size(); ++i)
+      all[i] = is_part(shapes[i]) ? body : (body = i);
+    return all;
+  }
+  /// From a to b, in a periodic box the nearest image [m].
+  Vec3 way(const Vec3& a, const Vec3& b) const {
+    Vec3 d{};
+    for (int k = 0; k < 2; ++k) {
+      const double length = box_.hi[k] - box_.lo[k];
+      d[k] = b[k] - a[k];
+      if (box_.periodic[k]) d[k] -= length * std::round(d[k] / length);
+    }
+    return d;
+  }
+
+  /// Half a step of the velocities.
+  void kick(std::span<const Acceleration> a) {
+    const auto mover = movers();
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      State& s = states[i];
+      const State& body = states[mover[i]];
+      if (mover[i] == i) {
+        for (int k = 0; k < 2; ++k) s.v[k] += 0.5 * step_ * a[i].of_place[k];
+        s.omega[2] += 0.5 * step_ * a[i].spin;
+      } else {
+        const Vec3 arm = way(body.x, s.x);
+        s.omega = body.omega;
+        s.v = {body.v[0] - body.omega[2] * arm[1], body.v[1] + body.omega[2] * arm[0], 0.0};
+      }
+    }
+  }
+  /// A step of the places; the discs of a clump turn about its centre.
+  void drift() {
+    const std::vector<State> before = states;
+    const auto mover = movers();
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const State& body = states[mover[i]];
+      const Vec3 arm = way(before[mover[i]].x, before[i].x);
+      const double c = std::cos(step_ * body.omega[2]), s = std::sin(step_ * body.omega[2]);
+      if (mover[i] == i)
+        for (int k = 0; k < 2; ++k) states[i].x[k] += step_ * states[i].v[k];
+      else
+        states[i].x = {body.x[0] + c * arm[0] - s * arm[1], body.x[1] + s * arm[0] + c * arm[1],
+                       0.0};
+    }
   }
 
   /// Force of a contact along its normal: never a pull. @param approach  speed of approach
@@ -158,35 +257,55 @@ class Discs {
     return overlap > 0.0 ? std::max(0.0, stiffness_ * overlap + damping_ * approach) : 0.0;
   }
 
-  std::vector<Vec3> accelerations(std::span<const Load> loads) const {
-    std::vector<Vec3> a(states.size());
+  /// Of everything that moves by itself, from weight, loads, walls and contacts of discs.
+  std::vector<Acceleration> accelerations(std::span<const Load> loads) const {
+    std::vector<Acceleration> a(states.size());
+    const auto mover = movers();
+    const auto touch = [&](std::size_t i, const Vec3& force) {
+      const std::size_t body = mover[i];
+      const Vec3 arm = way(states[body].x, states[i].x);
+      for (int k = 0; k < 2; ++k) a[body].of_place[k] += force[k] / shapes[body].mass;
+      a[body].spin += (arm[0] * force[1] - arm[1] * force[0]) / shapes[body].inertia;
+    };
+    std::vector<std::size_t> discs;  // all that has a surface
     for (std::size_t i = 0; i < states.size(); ++i) {
-      const State& s = states[i];
-      const double r = shapes[i].radius, m = shapes[i].mass;
-      for (int k = 0; k < 2; ++k) {
-        a[i][k] += gravity_[k] + loads[i].force[k] / m;
-        if (!box_.walls[k]) continue;
-        a[i][k] += push(r - (s.x[k] - box_.lo[k]), -s.v[k]) / m;
-        a[i][k] -= push(r - (box_.hi[k] - s.x[k]), s.v[k]) / m;
+      if (mover[i] == i) {
+        for (int k = 0; k < 2; ++k)
+          a[i].of_place[k] += gravity_[k] + loads[i].force[k] / shapes[i].mass;
+        a[i].spin += loads[i].torque[2] / shapes[i].inertia;
       }
-      for (std::size_t j = 0; j < i; ++j) {
-        Vec3 n{};
-        for (int k = 0; k < 2; ++k) {
-          n[k] = s.x[k] - states[j].x[k];
-          const double length = box_.hi[k] - box_.lo[k];
-          if (box_.periodic[k]) n[k] -= length * std::round(n[k] / length);
-        }
-        const double distance = std::hypot(n[0], n[1]);
-        const double approach =
-            -((s.v[0] - states[j].v[0]) * n[0] + (s.v[1] - states[j].v[1]) * n[1]) / distance;
-        const double force = push(r + shapes[j].radius - distance, approach);
-        for (int k = 0; k < 2; ++k) {
-          a[i][k] += force * n[k] / distance / m;
-          a[j][k] -= force * n[k] / distance / shapes[j].mass;
-        }
+      if (arms_.size() == 1 || mover[i] != i) discs.push_back(i);
+    }
+    for (std::size_t n = 0; n < discs.size(); ++n) {
+      const std::size_t i = discs[n];
+      touch(i, push_of_walls(i));
+      for (std::size_t m = 0; m < n; ++m) {
+        const std::size_t j = discs[m];
+        if (mover[i] == mover[j]) continue;
+        const Vec3 force = push_of_disc(i, j);
+        touch(i, force);
+        touch(j, {-force[0], -force[1], 0.0});
       }
     }
     return a;
+  }
+  Vec3 push_of_walls(std::size_t i) const {
+    Vec3 force{};
+    const State& s = states[i];
+    for (int k = 0; k < 2; ++k)
+      if (box_.walls[k])
+        force[k] = push(shapes[i].radius - (s.x[k] - box_.lo[k]), -s.v[k]) -
+                   push(shapes[i].radius - (box_.hi[k] - s.x[k]), s.v[k]);
+    return force;
+  }
+  /// Of disc j on disc i.
+  Vec3 push_of_disc(std::size_t i, std::size_t j) const {
+    const Vec3 n = way(states[j].x, states[i].x);
+    const double distance = std::hypot(n[0], n[1]);
+    double approach = 0.0;
+    for (int k = 0; k < 2; ++k) approach -= (states[i].v[k] - states[j].v[k]) * n[k] / distance;
+    const double force = push(shapes[i].radius + shapes[j].radius - distance, approach);
+    return {force * n[0] / distance, force * n[1] / distance, 0.0};
   }
 
   bool put_into_box(State& s) const {
@@ -202,7 +321,8 @@ class Discs {
 
   const Offer& offer_;
   Box box_;
-  Shape shape_;
+  std::vector<Shape> shapes_of_one_;  ///< a disc, or a clump and its discs
+  std::vector<Vec3> arms_;            ///< of these from the centre [m]
   Vec3 gravity_{};
   double step_ = 0.0, stiffness_ = 0.0, damping_ = 0.0;
 };
@@ -226,7 +346,7 @@ void run(Channel& channel) {
   hello.buoyancy = fluid.buoyancy == Buoyancy::None ? Buoyancy::None : Buoyancy::ByFluid;
   hello.step = discs.step();
   hello.solid_steps = static_cast<std::uint32_t>(offer.number("substeps"));
-  hello.particles = static_cast<std::int64_t>(discs.states.size());
+  hello.particles = discs.bodies();
   hello.first_interval = fluid.first_interval;
   hello.features = kCheckpoints;
   hello.sides.emplace();
@@ -238,6 +358,7 @@ void run(Channel& channel) {
   for (;; ++head.interval) {
     head.time = static_cast<double>(head.interval) * hello.step * hello.solid_steps;
     if (head.interval > fluid.first_interval) discs.insert(static_cast<int>(head.interval));
+    if (signalled()) head.flags |= kStopWished;
     if (head.flags & kCheckpoint) parts.keep(head.interval, discs.checkpoint(head));
     const auto reply = session.exchange(head, discs.states, discs.shapes);
     if (head.flags & kLast) return;
