@@ -17,6 +17,7 @@
 #include "lbm_solver/io/output_folder.h"
 #include "lbm_solver/io/scene_keys.h"
 #include "lbm_solver/io/scene_reader.h"
+#include "lbm_solver/solver/work.h"
 #include "protocol/program/command_line.h"
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
@@ -156,6 +157,20 @@ Decomposition divide(const Options& o, const Scene& scene, const Plan& plan, MPI
   }
 }
 
+/// What is known of the work of the layers where blocks shall share it. @throws InputError
+std::optional<LayerWork> known_work(const Scene& scene, const Plan& plan,
+                                    const Decomposition& ranks,
+                                    const std::optional<Restart>& restart) {
+  if (!scene.numerics.equal_work || ranks.alone()) return {};
+  if (!restart || !restart->record.parts().contains("work")) return first_work(scene, plan, ranks);
+  try {
+    return load_work(restart->record.part("work"), plan.domain);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(restart->path, fmt::format("does not fit this scene: {}", error.what()),
+                     "start again without --restart");
+  }
+}
+
 /// Every rank records its own exchange: FILE, FILE.1, FILE.2, …
 std::string trace_of(const std::string& file, const Decomposition& ranks) {
   return ranks.rank() == 0 ? file : fmt::format("{}.{}", file, ranks.rank());
@@ -187,7 +202,7 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   std::optional<Restart> restart = find_restart(scene, o.run.out, o.run.restart);
   const Plan plan = make_plan(scene, restart ? std::optional(restart->step) : std::nullopt);
   if (restart) check_same_scene(*restart, scene, plan, o.run.restart);
-  const Decomposition ranks = divide(o, scene, plan, world.local);
+  const Decomposition blocks = divide(o, scene, plan, world.local);
   if (scene.coupling && !channel)
     throw InputError(
         "mpirun", "no solid program was started beside lbm",
@@ -197,6 +212,8 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
                      "start lbm alone, or add the tables [coupling] and [particles]");
   if (!o.record.empty() && !channel)
     throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
+  const auto work = known_work(scene, plan, blocks, restart);
+  const Decomposition ranks = work ? of_equal_work(blocks, *work) : blocks;
   const std::unique_ptr<OutputFolder> folder = take_folder(o, scene, ranks);
   if (!o.record.empty())
     channel = protocol::make_recording_channel(
@@ -209,8 +226,8 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
     log.block("kept         the earlier run of this folder is now " + folder->set_aside());
   log.block(describe(scene, plan));
   if (!ranks.alone())
-    log.block(fmt::format("ranks        {} × {} × {}\n", ranks.grid()[0], ranks.grid()[1],
-                          ranks.grid()[2]));
+    log.block(fmt::format("ranks        {} × {} × {}{}\n", ranks.grid()[0], ranks.grid()[1],
+                          ranks.grid()[2], work ? describe_blocks(ranks, *work) : ""));
   const Restart* from = restart ? &*restart : nullptr;
   log.block(describe(scene.coupling ? run_coupled(scene, plan, ranks, *channel, o.run, log, from)
                                     : run_alone(scene, plan, ranks, o.run, log, from)));

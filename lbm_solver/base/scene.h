@@ -170,6 +170,7 @@ struct NumericsScene {
   std::string weight = "auto";      ///< viscous, balanced or fraction; auto: viscous, balanced
   std::optional<double> magic;      ///< Λ of TRT; absent: see solver/plan.h
   double smagorinsky = 0.0;         ///< S_c; 0: no turbulence model
+  bool equal_work = false;          ///< blocks of the ranks: of equal work instead of equal size
 };
 
 struct ParticleScene {

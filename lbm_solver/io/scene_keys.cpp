@@ -145,6 +145,9 @@ constexpr Meaning kMeanings[] = {
     {"numerics.weight",
      "Weight B of operators that have one; auto takes viscous, in three dimensions balanced "
      "(solids.md)."},
+    {"numerics.blocks",
+     "Blocks of the ranks: of equal size or of equal work, as far as it is known at the start "
+     "(parallel.md)."},
     {"numerics.smagorinsky", "Constant S_c of the turbulence model; 0 leaves it out."},
     {"numerics.magic", "Λ of TRT.", "3/16; 1/10 beside cells by resistance"},
     {"particles.diameter", "Diameter of the particles."},
