@@ -36,9 +36,11 @@ std::vector<const ObstacleScene*> meshes_of(const Scene& s) {
 
 /// The discs that a script can have as walls, in its words.
 std::vector<std::string> discs_of(const Scene& s) {
+  const double grain =
+      s.particles ? 0.25 * (s.particles->diameter.lo + s.particles->diameter.hi) : 0;
   std::vector<std::string> discs;
   for (const ObstacleScene& o : s.obstacles)
-    if (std::string wall = disc_wall_words(o); s.box.dimension == 2 && !wall.empty())
+    if (std::string wall = disc_wall_words(o, grain); s.box.dimension == 2 && !wall.empty())
       discs.push_back(std::move(wall));
   return discs;
 }

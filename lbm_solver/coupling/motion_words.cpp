@@ -41,12 +41,14 @@ std::string mesh_motion_words(const MotionScene& m) {
   throw std::logic_error("a motion that no script can follow");
 }
 
-std::string disc_wall_words(const ObstacleScene& o) {
+std::string disc_wall_words(const ObstacleScene& o, double grain_radius) {
   if (!o.round || !o.motion || o.motion->kind != MotionScene::Kind::Rotation) return {};
   if (o.motion->about != o.centre) return {};
-  // of a cylinder along z LIGGGHTS' shear along x (or y) is that of a turn about it
-  return fmt::format("zcylinder {} {} {} shear x {}", 0.5 * o.diameter, o.centre.x(), o.centre.y(),
-                     o.motion->angular_velocity * 0.5 * o.diameter);
+  // Of a cylinder along z LIGGGHTS' shear along x (or y) is its angular velocity [rad/s], and the
+  // wall has the speed of a turn at the middle of a grain, not where it touches.
+  const double radius = 0.5 * o.diameter, middle = radius + (o.hollow ? -1 : 1) * grain_radius;
+  return fmt::format("zcylinder {} {} {} shear x {}", radius, o.centre.x(), o.centre.y(),
+                     o.motion->angular_velocity * (middle > 0.0 ? radius / middle : 1.0));
 }
 
 }  // namespace lbm

@@ -15,6 +15,7 @@ std::string mesh_motion_words(const MotionScene& motion);
 
 /// A disc that turns about its middle as a wall of a script in two dimensions, behind
 /// `fix ID all wall/gran MODEL primitive type N`; empty where it is none.
-std::string disc_wall_words(const ObstacleScene& obstacle);
+/// @param grain_radius  of those that shall meet the wall at its own speed [m]
+std::string disc_wall_words(const ObstacleScene& obstacle, double grain_radius);
 
 }  // namespace lbm

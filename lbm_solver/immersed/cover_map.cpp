@@ -48,6 +48,7 @@ struct CoverMap::Mover {
   std::vector<std::size_t> places;  // in the index, of each block
   std::vector<CoverBlock> far;      // of a drum what faces out: no part of its load
   std::vector<std::size_t> far_places;
+  Vec3 off;  // from the pivot to the place on the grid that arms begin at
 };
 
 CoverMap::CoverMap(const Domain& domain, const Block& cells, const RadiusShift& shift)
@@ -164,7 +165,7 @@ void CoverMap::add(const Geometry& geometry) {
 void CoverMap::add(std::unique_ptr<MovingShape> shape) {
   BPLBM_EXPECT(footprints_.empty());
   fixed_.emplace_back();
-  movers_.push_back({std::move(shape), fixed_.size() - 1, {}, {}, {}});
+  movers_.push_back({std::move(shape), fixed_.size() - 1, {}, {}, {}, {}});
   motions_.resize(1 + movers_.size());
 }
 
@@ -172,8 +173,11 @@ void CoverMap::move(std::span<const Pose> poses) {
   BPLBM_EXPECT(poses.size() == movers_.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {
     Mover& mover = movers_[k];
-    motions_[1 + k] = {poses[k].velocity, poses[k].spin};
-    if (!mover.shape->look(poses[k])) continue;
+    const bool other = mover.shape->look(poses[k]);
+    mover.off = mover.shape->centre() - poses[k].centre();
+    if (d_ == 2) mover.off.z() = 0.0;
+    motions_[1 + k] = {poses[k].velocity + poses[k].spin.cross(mover.off), poses[k].spin};
+    if (!other) continue;
     std::vector<CoverBlock>& blocks = fixed_[mover.blocks];
     for (std::size_t i = 0; i < blocks.size(); ++i) unlink(mover.places[i], blocks[i]);
     for (std::size_t i = 0; i < mover.far.size(); ++i) unlink(mover.far_places[i], mover.far[i]);
@@ -344,6 +348,10 @@ std::vector<BodyLoad> CoverMap::fixed_loads() const {
   std::vector<BodyLoad> result;
   for (const auto& blocks : fixed_)
     result.push_back(d_ == 2 ? load_of<2>(blocks) : load_of<3>(blocks));
+  for (const Mover& mover : movers_) {
+    BodyLoad& load = result[mover.blocks];
+    load.torque += mover.off.cross(load.force);
+  }
   return result;
 }
 

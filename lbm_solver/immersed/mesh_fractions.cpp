@@ -81,10 +81,16 @@ class Polygon {
   std::array<Vec3, kMost> at_;
 };
 
-/// Sums of one layer of cells.
+/// Sums of one layer of cells. Places are those of the box, so that what is cut does not depend on
+/// where the cells begin.
 class Layer {
  public:
-  Layer(const Cell3& size, double plane) : nx_(size[0]), ny_(size[1]), plane_(plane) {
+  Layer(const Block& cells, double plane)
+      : nx_(cells.size[0]),
+        ny_(cells.size[1]),
+        x0_(cells.begin[0]),
+        y0_(cells.begin[1]),
+        plane_(plane) {
     for (auto* sums : {&volume_, &added_}) sums->resize(static_cast<std::size_t>(nx_) * ny_);
     columns_.resize(static_cast<std::size_t>(nx_ + 1) * ny_);
   }
@@ -95,10 +101,10 @@ class Layer {
   /// @param part   what lies in the layer
   /// @param thick  that is added to the solid
   void add(const Polygon& part, double thick) {
-    const int first = std::max(0, static_cast<int>(std::floor(part.least(1))));
-    const int last = std::min(ny_ - 1, static_cast<int>(std::floor(part.most(1))));
+    const int first = std::max(0, static_cast<int>(std::floor(part.least(1))) - y0_);
+    const int last = std::min(ny_ - 1, static_cast<int>(std::floor(part.most(1))) - y0_);
     for (int y = first; y <= last; ++y) {
-      const Polygon in_row = part.between(1, y, y + 1.0);
+      const Polygon in_row = part.between(1, y0_ + y, y0_ + y + 1.0);
       if (!in_row.empty()) add_to_row(in_row, y, thick);
     }
   }
@@ -121,21 +127,22 @@ class Layer {
   void add_to_row(const Polygon& part, int y, double thick) {
     const double low = part.least(0), high = part.most(0);
     double* columns = &columns_[static_cast<std::size_t>(y) * (nx_ + 1)];
-    if (low < 0.0) columns[0] -= part.between(0, -kFar, 0.0).measure().seen;
-    const int first = std::max(0, static_cast<int>(std::floor(low)));
-    const int last = std::min(nx_ - 1, static_cast<int>(std::floor(high)));
+    if (low < x0_) columns[0] -= part.between(0, -kFar, x0_).measure().seen;
+    const int first = std::max(0, static_cast<int>(std::floor(low)) - x0_);
+    const int last = std::min(nx_ - 1, static_cast<int>(std::floor(high)) - x0_);
     for (int x = first; x <= last; ++x) {
-      const Polygon piece = part.between(0, x, x + 1.0);
+      const double end = x0_ + x + 1.0;
+      const Polygon piece = part.between(0, x0_ + x, end);
       if (piece.empty()) continue;
       const auto [seen, x_moment, area] = piece.measure();
       const std::size_t at = static_cast<std::size_t>(y) * nx_ + x;
-      volume_[at] -= (x + 1.0) * seen - x_moment;
+      volume_[at] -= end * seen - x_moment;
       columns[x + 1] -= seen;
       added_[at] += area * (plane_ + thick);
     }
   }
 
-  int nx_, ny_;
+  int nx_, ny_, x0_, y0_;
   double plane_;
   std::vector<double> volume_, columns_, added_;
 };
@@ -166,10 +173,9 @@ void fill_mesh(const TriangleMesh& mesh, bool hollow, const Block& cells, const 
 void fill_mesh(const TriangleMesh& mesh, const std::vector<double>& curvatures, bool hollow,
                const Block& cells, const RadiusShift& shift,
                const std::function<void(const FractionSpan&)>& take) {
-  const Vec3 origin(cells.begin[0], cells.begin[1], cells.begin[2]);
   std::vector<double> bend = curvatures;
   for (double& b : bend) b *= (hollow ? -1.0 : 1.0) * shift.curvature;
-  Layer layer(cells.size, shift.plane);
+  Layer layer(cells, shift.plane);
   std::vector<double> row(cells.size[0]);
   const auto lists = by_layer(mesh, cells.begin[2], cells.size[2]);
   for (int z = 0; z < cells.size[2]; ++z) {
@@ -177,9 +183,9 @@ void fill_mesh(const TriangleMesh& mesh, const std::vector<double>& curvatures, 
     layer.clear();
     for (const auto number : lists[z]) {
       const auto& [a, b, c] = mesh.triangles[number];
-      const Polygon whole(mesh.vertices[a] - origin, mesh.vertices[b] - origin,
-                          mesh.vertices[c] - origin);
-      const Polygon part = whole.between(2, z, z + 1.0);
+      const Polygon whole(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+      const int z0 = cells.begin[2] + z;
+      const Polygon part = whole.between(2, z0, z0 + 1.0);
       if (!part.empty()) layer.add(part, (bend[a] + bend[b] + bend[c]) / 3.0);
     }
     for (int y = 0; y < cells.size[1]; ++y) {

@@ -117,6 +117,10 @@ bool MovingShape::look(const Pose& pose) {
   return true;
 }
 
+Vec3 MovingShape::centre() const {
+  return (pose_.centre() / kSnap).array().round().matrix() * kSnap;
+}
+
 void MovingShape::map(const Domain& domain, const Block& cells,
                       const std::function<void(const CoverSpan&)>& take) const {
   if (at_rest_.hollow) return map_image(Vec3(), domain, cells, take);
@@ -154,7 +158,7 @@ void MovingShape::map_image(const Vec3& offset, const Domain& domain, const Bloc
   Region region(around);
   region.fill(image, bend_, at_rest_.hollow, shift_);
   region.mark_core(domain.dimension());
-  const Vec3 centre = pose_.centre() + offset;
+  const Vec3 centre = this->centre() + offset;
   const bool flat = domain.dimension() == 2;
   std::vector<double> inner;
   for (int z = from[2]; z < to[2]; ++z)

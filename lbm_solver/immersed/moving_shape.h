@@ -14,7 +14,7 @@ namespace lbm {
 /// Cells of a row that a moving solid covers, side by side.
 struct CoverSpan {
   int x, y, z;                    ///< of the first one, among the rank's cells
-  Vec3 arm;                       ///< from the pivot of the covering image to that cell's centre
+  Vec3 arm;                       ///< from the covering image's centre() to that cell's centre
   std::span<const double> cover;  ///< solid fraction, or kCore
   std::span<const double> inner;  ///< of a drum: the part that faces its inside; else empty
 };
@@ -30,6 +30,8 @@ class MovingShape {
 
   /// @return whether the map of this pose is another one than that of the last
   bool look(const Pose& pose);
+  /// The pivot of that pose on the grid of kSnap, so that arms are exact.
+  Vec3 centre() const;
   /// The cells of the pose that was looked at; images across periodic sides too. Core is what has
   /// nothing but whole cells within two cells around it.
   /// @throws std::invalid_argument  see fill()

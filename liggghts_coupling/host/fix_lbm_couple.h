@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "liggghts_coupling/bond/bond_book.h"
@@ -104,6 +105,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
   double time_step_ = 0.0;         ///< [s], of all runs
   double waited_before_ = 0.0;     ///< [s], until the first step
   std::int64_t left_ = 0;  ///< particles, since the beginning of the coupled run, of this process
+  std::set<std::int64_t> left_clumps_;  ///< those of all processes that count among them
   /// Smallest and largest of each type that was there when a run began, where the scene has
   /// checkpoints [m]: a run that goes on must find its neighbours in the same way when they have
   /// left.

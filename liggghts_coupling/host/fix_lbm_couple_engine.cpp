@@ -11,6 +11,8 @@
 #include <update.h>
 
 #include <memory>
+#include <numeric>
+#include <vector>
 
 #include "liggghts_coupling/bond/bond_book.h"
 #include "liggghts_coupling/bond/leaving.h"
@@ -68,9 +70,28 @@ protocol::Hello FixLbmCouple::hello() const {
   return hello;
 }
 
-/// Particles of which the fluid knows that leave the box.
+/// Particles of which the fluid knows that leave the box; a clump counts once, on the first rank,
+/// whichever of its spheres leave.
 void FixLbmCouple::count_leaving() {
-  if (coupling_->begun()) left_ += static_cast<std::int64_t>(leaving(*lmp, groupbit).size());
+  if (!coupling_->begun()) return;
+  const std::int64_t* const carrier = clumps_.carriers();
+  std::vector<long long> clumps;
+  for (const int i : leaving(*lmp, groupbit)) {
+    if (carrier && carrier[i] != protocol::kItself)
+      clumps.push_back(carrier[i]);
+    else
+      ++left_;
+  }
+  if (!carrier) return;
+  std::vector<int> counts(comm->nprocs), begins(comm->nprocs);
+  const int mine = static_cast<int>(clumps.size());
+  MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::exclusive_scan(counts.begin(), counts.end(), begins.begin(), 0);
+  std::vector<long long> all(begins.back() + counts.back());
+  MPI_Allgatherv(clumps.data(), mine, MPI_LONG_LONG, all.data(), counts.data(), begins.data(),
+                 MPI_LONG_LONG, world);
+  for (const long long clump : all)
+    if (left_clumps_.insert(clump).second && comm->me == 0) ++left_;
 }
 
 /// What there is to say of particles that have left and of bonds; of these nothing where this

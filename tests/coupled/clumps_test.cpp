@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -92,13 +93,17 @@ class Clumps : public testing::Test {
 
   JobResult run(const std::string& bodies, const std::string& scene = kScene, int fluids = 1,
                 int solids = 1, const std::string& options = "--out out") {
+    return run_script(test::replaced(kScript, "BODIES", bodies), scene, fluids, solids, options);
+  }
+  JobResult run_script(const std::string& script, const std::string& scene, int fluids = 1,
+                       int solids = 1, const std::string& options = "--out out",
+                       double limit = 100.0) {
     folder_.write("scene.toml", scene);
-    std::string script = test::replaced(kScript, "BODIES", bodies);
-    script = test::replaced(script, "PROCESSORS", solids == 1 ? "1 1 1" : "1 1 2");
-    folder_.write("in.liggghts", script);
+    folder_.write("in.liggghts",
+                  test::replaced(script, "PROCESSORS", solids == 1 ? "1 1 1" : "1 1 2"));
     return test::run(mpirun({kLbm + " --progress none " + options, fluids},
                             {kLiggghts + " -in in.liggghts", solids}),
-                     folder_.path(), 100.0);
+                     folder_.path(), limit);
   }
 
   using Row = std::array<double, 17>;  // of probes.csv in three dimensions
@@ -133,6 +138,20 @@ TEST_F(Clumps, OfMultisphereThatAreNeutralStayWhereTheyAre) {
   for (int axis = 2; axis < 5; ++axis)
     EXPECT_NEAR(path.back()[axis], path.front()[axis], 1e-6 * 0.003);
   EXPECT_EQ(rows("out", false).size(), 2 * path.size());
+}
+
+TEST_F(Clumps, Slow_OfMultisphereThatAreNeutralStayWhereTheyAreForASecond) {
+  const std::string scene = test::replaced(kScene, "end_time = 0.05", "end_time = 1.0");
+  const std::string script = test::replaced(kScript, "BODIES", multisphere("1000"));
+  test::expect_end(run_script(script, scene, 1, 1, "--out out", 550.0), 550.0, 0, {});
+  const auto path = rows("out", true);
+  ASSERT_GT(path.size(), 100U);
+  double off = 0.0;  // m, at any time
+  for (const Row& row : path)
+    for (int axis = 2; axis < 5; ++axis)
+      off = std::max(off, std::abs(row[axis] - path.front()[axis]));
+  std::printf("a neutral clump within %.2g of its spheres' diameter\n", off / 0.003);
+  EXPECT_LT(off, 1e-6 * 0.003);
 }
 
 std::string heavy(double density) {
@@ -224,6 +243,54 @@ TEST_F(Clumps, TakeTheImpulseOfTheirLoads) {
       run(light + "\nvelocity all set 0.05 0.03 0.0 units box", scene, 1, 1, "--out of_rigid"),
       100.0, 0, {});
   expect_impulse(rows("of_rigid", true), 1111.12 * 2.0 * 1.41371669e-8, 1e-6, 2);
+}
+
+/// I ΔΩ = Σ T M about y, about which bodies of revolution turn that fall with their axis in the
+/// plane of x and z: on any number of intervals, as above.
+void expect_turn(const std::vector<std::array<double, 17>>& path, double inertia, double off) {
+  ASSERT_GT(path.size(), 20U);
+  const double interval = path[1][0] - path[0][0];
+  double largest = 0.0, fastest = 0.0;
+  for (const auto& row : path) {
+    largest = std::max(largest, std::abs(row[15]));
+    fastest = std::max(fastest, std::abs(row[9]));
+  }
+  for (std::size_t k = 3; k < path.size(); ++k)
+    EXPECT_NEAR(inertia * (path[k][9] - path[k - 1][9]), interval * path[k - 1][15],
+                off * interval * largest)
+        << "interval " << k;
+  EXPECT_GT(fastest, 0.1);  // rad/s: there is a turn to speak of
+}
+
+TEST_F(Clumps, TurnByTheTorqueOfTheirLoads) {
+  // A larger and a smaller sphere, side by side: the fluid holds the smaller one back.
+  std::string scene = test::replaced(heavy(2000), "probe_every = 0.005\n", "");
+  scene = test::replaced(scene, "end_time = 0.05", "end_time = 0.02");
+  scene = test::replaced(scene, "diameter = 0.003", "diameter = [0.0018, 0.003]");
+  const auto about_y = [](double a, double b, double apart, double density) {
+    const double m = 4.0 / 3.0 * std::numbers::pi * density, ma = m * a * a * a, mb = m * b * b * b;
+    return 0.4 * (ma * a * a + mb * b * b) + ma * mb / (ma + mb) * apart * apart;
+  };
+  // They touch, so that no lens is counted twice, but for LIGGGHTS' samples (0.3 % of the volume).
+  folder_.write("two.txt", "-0.75 0 0 1.5\n1.65 0 0 0.9\n");
+  test::expect_end(run(multisphere("2000"), scene, 1, 1, "--out of_multisphere"), 100.0, 0, {});
+  expect_turn(rows("of_multisphere", true), about_y(1.5e-3, 0.9e-3, 2.4e-3, 2000.0), 0.01);
+}
+
+// Through the open side below: one clump of two spheres, which counts once.
+TEST_F(Clumps, ThatLeaveAnOpenBoxCountOnce) {
+  const std::string scene = test::replaced(heavy(2500), "end_time = 0.05", "end_time = 0.04") +
+                            "[[boundary]]\nside = \"back\"\nkind = \"pressure\"\n";
+  const std::string in_box = test::replaced(
+      test::replaced(kScript, "BODIES", multisphere("2500", "0. 0. -0.15")),
+      "fix z all wall/gran model hertz tangential history primitive type 1 zplane ${z_lo}\n",
+      "thermo_modify lost ignore\n");
+  const std::string script = test::replaced(in_box, "0.0105 0.0115", "0.0015 0.0025");
+  for (const int ranks : {1, 2}) {
+    const JobResult job = run_script(script, scene, 1, ranks, "--out " + std::to_string(ranks));
+    test::expect_end(job, 100.0, 0, {"1 grains left"});
+    EXPECT_EQ(job.output.find("no fix of the script moves"), std::string::npos);
+  }
 }
 
 TEST_F(Clumps, OfMultisphereGoOnFromACheckpointAsTheRunThatWasNot) {

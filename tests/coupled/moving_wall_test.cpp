@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include "lbm_solver/io/scene_reader.h"
@@ -163,6 +164,83 @@ TEST_F(MovingBlock, AsksForNoMotionThatIsNotThere) {
   const JobResult job = run("--out out");
   EXPECT_NE(job.exit_code, 0) << job.output;
   EXPECT_NE(job.output.find("nothing defines ${mesh2_motion}"), std::string::npos) << job.output;
+}
+
+constexpr const char* kDrum = R"(title = "disc in a drum"
+[box]
+size = [0.0315, 0.0315]
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-5
+gravity = [0.0, -9.8]
+velocity_scale = 0.1
+[[obstacle]]
+centre = [0.01575, 0.01575]
+diameter = 0.02
+hollow = true
+motion = "rotation"
+angular_velocity = 2.0
+surface_only = true
+[particles]
+diameter = 0.003
+density = 2500.0
+contact_stiffness = 50000.0
+start = [[0.01575, 0.0073]]
+[numerics]
+cell = 0.0005
+[coupling]
+[run]
+end_time = 0.6
+[output]
+probe_every = 0.05
+)";
+
+constexpr const char* kDrumScript = R"(
+include ${scene_folder}/common/box.liggghts
+create_atoms 1 single ${particle1_x} ${particle1_y} 0.0 units box
+set type 1 diameter ${diameter_max} density ${density_max}
+fix kn all property/global kn peratomtypepair 1 ${contact_stiffness}
+fix kt all property/global kt peratomtypepair 1 ${contact_stiffness}
+fix gn all property/global gamman peratomtypepair 1 400
+fix gt all property/global gammat peratomtypepair 1 400
+fix mu all property/global coefficientFriction peratomtypepair 1 0.5
+pair_style gran model hooke/stiffness tangential history
+pair_coeff * *
+fix drum all wall/gran model hooke/stiffness tangential history primitive type 1 ${disc1_wall}
+fix move all nve/sphere
+fix weight all gravity ${gravity} vector ${gravity_x} ${gravity_y} 0.0
+timestep ${solid_step}
+fix fluid all lbm/couple every ${substeps}
+fix flat all enforce2d
+run ${solid_steps_total}
+)";
+
+// It rolls at the bottom, where its weight and the liquid hold it: its rim has the wall's speed
+// where the two touch, to half a per cent for what they overlap.
+TEST(TurningDrum, MeetsGrainsAtTheSpeedOfItsWall) {
+  const test::TemporaryFolder folder;
+  folder.write("scene.toml", kDrum);
+  folder.write("in.liggghts", kDrumScript);
+  test::run("ln -sfn " BPLBM_SOURCE_DIR "/cases/common common", folder.path(), 5.0);
+  const JobResult job = test::run(
+      mpirun({test::kLbm + " --progress none --out out"}, {test::kLiggghts + " -screen none"}),
+      folder.path(), 60.0);
+  ASSERT_EQ(job.exit_code, 0) << job.output;
+  std::istringstream lines(test::read_file(folder.path() + "/out/probes.csv"));
+  std::string line, name, value;
+  std::map<std::string, double> last;  // column by name
+  std::string head;
+  std::getline(lines, head);
+  while (std::getline(lines, line)) {
+    std::istringstream names(head), values(line);
+    while (std::getline(names, name, ',') && std::getline(values, value, ','))
+      last[name.substr(0, name.find(' '))] = std::strtod(value.c_str(), nullptr);
+  }
+  const Vec3 arm(last.at("x") - 0.01575, last.at("y") - 0.01575, 0.0);
+  const double along = (arm.x() * last.at("vy") - arm.y() * last.at("vx")) / arm.norm();
+  const double rim = along + last.at("omega") * 0.0015;
+  std::printf("rim at %.4f of the wall's speed\n", rim / (2.0 * 0.01));
+  EXPECT_NEAR(rim / (2.0 * 0.01), 1.0, 0.005);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ def fluid_ranks(mpirun):
     for task in pathlib.Path(f"/proc/{mpirun}/task").glob("*/children"):
         for child in task.read_text().split():
             try:
-                if pathlib.Path(f"/proc/{child}/comm").read_text().strip() == "lbm":
+                if pathlib.Path(f"/proc/{child}/comm").read_text().strip() in ("lbm", "lbm_2d"):
                     found.append(int(child))
             except OSError:  # it has just ended
                 pass

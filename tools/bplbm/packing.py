@@ -1,12 +1,16 @@
-"""A dense, polydisperse packing of discs, or of spheres, in a box, periodic or walled, relaxed with LIGGGHTS.
+"""A dense, polydisperse packing of discs, spheres, or clumps of them, in a box, periodic or walled.
 
-Discs or spheres of the wished sizes start at random places, repel each other and the walls, and are slowed until none
-overlaps by more than the bound. Written are
+Discs or spheres of the wished sizes start at random places, repel each other and the walls, and are slowed by LIGGGHTS
+until none overlaps by more than the bound. With --clump they are bodies of one shape, which start at random angles, too,
+and are moved here. Written are
 
   NAME.liggghts   create_atoms and set lines, to be included after create_box: LIGGGHTS reads them
                   without the traps of write_data and insert/pack in two dimensions. Uses the script's
                   variable disc_density (density × depth), for spheres density_max
   NAME.csv        x,y,diameter (x,y,z,diameter) in m, also usable as [grains] of a scene
+
+Of clumps these are all their spheres, each with the number of its clump as molecule; NAME.liggghts begins with what its
+script needs besides.
 """
 
 import argparse
@@ -17,6 +21,7 @@ import tempfile
 
 import numpy as np
 
+from bplbm import clump_packing
 from bplbm.mpi_job import environment
 from bplbm.project import BIN, tool
 
@@ -37,7 +42,7 @@ def ends(args):
 
 
 def kind(args):
-    return "discs" if dimensions(args) == 2 else "spheres"
+    return "clumps" if args.clump else "discs" if dimensions(args) == 2 else "spheres"
 
 
 def fail(text):
@@ -52,7 +57,9 @@ def arguments():
     p.add_argument("--box", required=True, nargs="+", type=float, metavar="LO HI",
                    help="X_LO X_HI Y_LO Y_HI of discs, with Z_LO Z_HI of spheres [m]")
     p.add_argument("--diameter", required=True, nargs=2, type=float, metavar=("SMALLEST", "LARGEST"),
-                   help="[m]")
+                   help="[m]; of clumps: of the disc or sphere of their area or volume")
+    p.add_argument("--clump", metavar="FILE", help="makes clumps of this shape: lines of x y z radius in any unit, as "
+                   "tools/make_clump writes them; z = 0 for discs")
     p.add_argument("--law", default="uniform", choices=["uniform", "lognormal"],
                    help="of the diameters; lognormal: ± 2 σ between the two, cut off there")
     group = p.add_mutually_exclusive_group()
@@ -67,6 +74,11 @@ def arguments():
         fail("--box: give X_LO X_HI Y_LO Y_HI, of spheres also Z_LO Z_HI")
     if "z" in args.periodic and dimensions(args) == 2:
         fail("--periodic z: a box of discs has no z; give six numbers as --box for spheres")
+    if args.clump:
+        try:
+            clump_packing.read_shape(args.clump, dimensions(args))
+        except ValueError as error:
+            fail(str(error))
     args.fraction = USUAL[dimensions(args)] if args.fraction is None else args.fraction
     return args
 
@@ -193,6 +205,15 @@ def wrap(places, args):
     return places
 
 
+def pack_clumps(args, sizes, random):
+    low, high = ends(args)
+    periodic = np.array([axis in args.periodic for axis in "xyz"[:len(low)]])
+    try:
+        return clump_packing.pack(args.clump, sizes, low, high, periodic, args.overlap, random)
+    except ValueError as error:
+        fail(str(error))
+
+
 MADE_BY = "; made by tools/make_packing"
 
 
@@ -209,12 +230,33 @@ def refuse_others(args):
         fail(f"{path} is there and no packing of this tool: it is not overwritten; give another --out, or remove it")
 
 
-def write(args, places, sizes):
+HOW_CLUMPS_MOVE = """# Spheres of a clump have its number as molecule. A script with them has, in this order,
+#   atom_style hybrid granular molecular
+#   include THIS FILE, after create_box
+#   neigh_modify exclude molecule all
+#   fix move all rigid molecule
+"""
+
+
+def numbers(values):
+    return " ".join(f"{v:.9g}" if v else "0.0" for v in values)
+
+
+def write(args, places, sizes, clumps=None, excess=1.0):
+    """clumps: of each sphere the number of its clump and how many times it was moved through each periodic side.
+    excess: of the volumes of a clump's spheres over its own, by which their density is divided."""
     density = "${disc_density}" if dimensions(args) == 2 else "${density_max}"
-    lines = [f"# {len(sizes)} {kind(args)}{MADE_BY} {' '.join(sys.argv[1:])}"]
+    count = f"{clumps[0][-1]} clumps of {len(sizes) // clumps[0][-1]}" if clumps else f"{len(sizes)} {kind(args)}"
+    lines = [f"# {count}{MADE_BY} {' '.join(sys.argv[1:])}"]
+    if clumps:
+        lines += [*HOW_CLUMPS_MOVE.splitlines(), f"variable clump_density equal {density}/{excess:.9g}"]
+        density = "${clump_density}"
     for i, (place, size) in enumerate(zip(places, sizes, strict=True)):
-        lines.append("create_atoms 1 single " + " ".join(f"{v:.9g}" if v else "0.0" for v in [*place, 0.0][:3]) + " units box")
-        lines.append(f"set atom {i + 1} diameter {size:.9g} density {density}")
+        lines.append(f"create_atoms 1 single {numbers([*place, 0.0][:3])} units box")
+        more = f" mol {clumps[0][i]}" if clumps else ""
+        if clumps and np.any(clumps[1][i]):
+            more += " image " + " ".join(str(int(n)) for n in [*clumps[1][i], 0][:3])
+        lines.append(f"set atom {i + 1} diameter {size:.9g} density {density}{more}")
     pathlib.Path(args.out + ".liggghts").write_text("\n".join(lines) + "\n")
     rows = [",".join(f"{v:.9g}" for v in (*place, size)) for place, size in zip(places, sizes, strict=True)]
     head = "x,y,diameter" if dimensions(args) == 2 else "x,y,z,diameter"
@@ -230,16 +272,22 @@ def main():
     sizes = diameters(args, random)
     if args.look:
         return
-    margin = 0.5 * sizes
     low, high = ends(args)
-    places = random.uniform(low + margin[:, None], high - margin[:, None])
-    places, left = relax(args, places, sizes)
     d = dimensions(args)
+    if args.clump:
+        packing = pack_clumps(args, sizes, random)
+        left = packing.left
+    else:
+        margin = 0.5 * sizes
+        places, left = relax(args, random.uniform(low + margin[:, None], high - margin[:, None]), sizes)
     fraction = BALL[d] * (sizes**d).sum() / np.prod(high - low)
     if left > args.overlap:
         fail(f"overlaps of {left:.2g} radii are left at a fraction of {fraction:.3f}; take a lower "
              "fraction or a larger --overlap")
-    write(args, places, sizes)
+    if args.clump:
+        write(args, packing.places, packing.diameters, (packing.clumps, packing.images), packing.excess)
+    else:
+        write(args, places, sizes)
     print(f"packing | {len(sizes)} {kind(args)}, {'area' if d == 2 else 'volume'} fraction {fraction:.3f}, largest overlap {max(left, 0):.2g} radii "
           f"-> {args.out}.liggghts, {args.out}.csv")
 

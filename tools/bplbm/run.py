@@ -18,7 +18,7 @@ from bplbm import output_folder, placement, solid_alone
 from bplbm.logs import warning_lines
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
-from bplbm.project import BIN, INSTALLED, TOOLS, missing_cpu_features, tool
+from bplbm.project import BIN, INSTALLED, TOOLS, fluid_program, missing_cpu_features, tool
 
 OUT_OF_TOLERANCE = 4
 FAULT = 1
@@ -26,7 +26,7 @@ FAULT = 1
 
 def command(args, out):
     progress = "line" if sys.stdout.isatty() else "tenths"
-    fluid = [str(BIN / "lbm"), *scene_files(args)]
+    fluid = [str(fluid_program()), *scene_files(args)]
     fluid += ["--out", str(out), "--threads", str(args.threads), "--progress", progress]
     fluid += ["--set", args.set] + (["--variant", label(args)] if label(args) else [])
     fluid += ["--until", repr(args.until)] if args.until is not None else []
@@ -238,12 +238,25 @@ def study(args, runs, out):
     return 0
 
 
+def programs(args):
+    """What has to be built for a run. The kernels in space take most of the time: a run in the plane waits for them only
+    where they have been built before."""
+    needed = []
+    if not args.scene.is_solid_alone:
+        needed.append("lbm_2d" if args.scene.dimension == 2 and not (BIN / "lbm").exists() else "lbm")
+    if args.engine in ("lammps", "reference", "c", "fortran"):
+        needed.append(f"{args.engine}_engine")
+    elif args.engine == "liggghts" and not args.engine_command and (args.scene.is_coupled or args.scene.is_solid_alone):
+        needed.append("liggghts")
+    return needed
+
+
 def check_programs(args):
     """Refuses a run whose programs are not there, or were compiled for another processor."""
     if missing := missing_cpu_features():
         fail(f"these programs were compiled for a processor with {', '.join(missing)}, which this machine lacks; "
              "install a package for this processor, or build from the sources")
-    if (args.no_build or INSTALLED) and not (BIN / "lbm").exists():
+    if (args.no_build or INSTALLED) and not fluid_program().exists():
         what = "install the package again" if INSTALLED else "leave --no-build out, or run tools/build"
         fail(f"{BIN / 'lbm'} is missing: {what}")
     if args.no_build and args.engine == "liggghts" and not args.engine_command and args.scene.is_coupled \
@@ -266,6 +279,7 @@ def main():
     out = output_folder.resolved(args.out or out_folder(args))
     if args.look:
         take_folder(args, out, look=True)
+        print(*programs(args))
         return 0
     check_programs(args)
     others = comparison_runs(args)

@@ -82,6 +82,22 @@ class Launch(unittest.TestCase):
         for job_code in (1, 2, 3):
             self.assertEqual(self.run_main("settling_disc", "--no-study", job_code=job_code)[0], job_code)
 
+    def test_only_what_a_run_needs_is_built(self):
+        """tools/run builds what --look prints."""
+        for words, there, targets in (
+                (["settling_disc"], False, ["lbm_2d", "liggghts"]), (["settling_disc"], True, ["lbm", "liggghts"]),
+                (["ten_cate_sphere"], False, ["lbm", "liggghts"]), (["cylinder_flow"], False, ["lbm_2d"]),
+                (["settling_disc", "--engine", "lammps"], True, ["lbm", "lammps_engine"]),
+                (["settling_disc", "--engine", "c"], True, ["lbm", "c_engine"]),
+                (["settling_disc", "--engine", "python"], True, ["lbm"]),
+                (["settling_disc", "--engine-command", "true"], True, ["lbm"])):
+            with tempfile.TemporaryDirectory() as folder:
+                lbm = pathlib.Path(folder) / "lbm"
+                if there:
+                    lbm.touch()
+                with mock.patch.object(run, "BIN", lbm.parent):
+                    self.assertEqual(run.programs(arguments(words)), targets, words)
+
     def test_unknown_names_are_listed(self):
         for words, expected in ((["nothing"], "settling_disc"),
                                 (["settling_disc", "--set", "nothing"], "resolved, fine"),
