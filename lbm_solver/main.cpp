@@ -139,6 +139,27 @@ std::unique_ptr<OutputFolder> take_folder(const Options& o, const Scene& scene,
   return folder;
 }
 
+/// Rank 0 looks for damage; where there is none left to go on from, every rank sees for itself.
+std::optional<Restart> find_restart_together(const Scene& scene, const Options& o, MPI_Comm comm) {
+  if (o.run.restart.from.empty()) return std::nullopt;
+  enum Found { kNothing, kLast, kEarlier };
+  int rank = 0, found = kNothing;
+  MPI_Comm_rank(comm, &rank);
+  std::optional<Restart> restart;
+  std::exception_ptr mistake;
+  if (rank == 0) try {
+      restart = find_restart(scene, o.run.out, o.run.restart);
+      found = restart->earlier ? kEarlier : kLast;
+    } catch (...) {
+      mistake = std::current_exception();
+    }
+  MPI_Bcast(&found, 1, MPI_INT, 0, comm);
+  if (mistake) std::rethrow_exception(mistake);
+  if (rank == 0) return restart;
+  if (found == kNothing) return find_restart(scene, o.run.out, o.run.restart);
+  return take_restart(scene, o.run.out, o.run.restart, found == kEarlier);
+}
+
 /// How the box is divided among the ranks of lbm.
 Decomposition divide(const Options& o, const Scene& scene, const Plan& plan, MPI_Comm comm) {
   int size = 0;
@@ -199,7 +220,7 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
                             ? scene.coupling->timeout
                             : protocol::seconds_from_environment("BPLBM_TIMEOUT", kAloneSeconds));
   check_until(scene, o.run);
-  std::optional<Restart> restart = find_restart(scene, o.run.out, o.run.restart);
+  const std::optional<Restart> restart = find_restart_together(scene, o, world.local);
   const Plan plan = make_plan(scene, restart ? std::optional(restart->step) : std::nullopt);
   if (restart) check_same_scene(*restart, scene, plan, o.run.restart);
   const Decomposition blocks = divide(o, scene, plan, world.local);
