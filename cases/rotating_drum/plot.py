@@ -45,19 +45,20 @@ class Bed:
 
 
 def wall_speed(run):
-    """Tangential velocity of the cells next to the wall above the bed over that of the wall there."""
-    ratios = []
+    """Tangential velocity of the liquid at the wall above the bed, over the wall's: a line through the cells next to it."""
+    cell, ratios, depths = run.parameters["cell"], [], []
     for time, name in run.frames():
         if time <= BEGIN:
             continue
         frame = run.frame(name)
         y, x = np.indices(frame["pressure"].shape)
-        arm = (np.stack([x, y]) + 0.5) * run.parameters["cell"] - CENTRE
+        arm = (np.stack([x, y]) + 0.5) * cell - CENTRE
         r = np.hypot(*arm)
         tangential = (arm[0] * frame["velocity"][..., 1] - arm[1] * frame["velocity"][..., 0]) / r
-        near = (frame["solid_fraction"] == 0) & (np.abs(r - RADIUS + 2 * run.parameters["cell"]) < run.parameters["cell"]) & (arm[1] > 0.6 * RADIUS)
-        ratios.append(np.mean(tangential[near] / (SPIN * r[near])))
-    return np.mean(ratios)
+        near = (frame["solid_fraction"] == 0) & (r > RADIUS - 4 * cell) & (r < RADIUS - cell) & (arm[1] > 0.6 * RADIUS)
+        ratios.append(tangential[near] / (SPIN * r[near]))
+        depths.append(RADIUS - r[near])
+    return np.polyfit(np.concatenate(depths), np.concatenate(ratios), 1)[1]
 
 
 def told_of(bed, name):

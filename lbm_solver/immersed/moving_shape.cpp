@@ -15,6 +15,7 @@ namespace lbm {
 namespace {
 
 constexpr int kCoreCells = 2;  // from one of the core to the next that is not covered whole
+constexpr int kMargin = kCoreCells + 1;  // from a wall at rest to that
 
 /// What a mesh covers of a block of cells that may reach beyond the rank's.
 class Region {
@@ -35,8 +36,13 @@ class Region {
 
   /// Makes core of the whole cells that have nothing but whole cells around them.
   void mark_core(int dimension) {
-    each_inside(ball(dimension, kCoreCells * kCoreCells),
+    each_inside(ball(dimension, kCoreCells * kCoreCells), 1.0,
                 [this](std::size_t k) { cover_[k] = kCore; });
+  }
+  /// Makes walls at rest of the core that has nothing but core beside it, across corners too. What
+  /// core sends into one comes back, and core forgets it: nothing builds up, and no mass passes.
+  void mark_wall(int dimension) {
+    each_inside(ball(dimension, dimension), kCore, [this](std::size_t k) { cover_[k] = kWall; });
   }
   const double* row(int x, int y, int z) const { return &cover_[at(x, y, z)]; }
 
@@ -55,11 +61,11 @@ class Region {
             ways.push_back({x, y, z});
     return ways;
   }
-  /// Calls f for the cells that have nothing but whole cells at the ends of some ways.
+  /// Calls f for the cells of at least a cover that have nothing but such at the ends of some ways.
   template <class F>
-  void each_inside(const std::vector<Cell3>& ways, F&& f) {
+  void each_inside(const std::vector<Cell3>& ways, double least, F&& f) {
     std::vector<std::uint8_t> whole(size_);
-    for (std::size_t k = 0; k < size_; ++k) whole[k] = cover_[k] >= 1.0;
+    for (std::size_t k = 0; k < size_; ++k) whole[k] = cover_[k] >= least;
     Cell3 c;
     for (c[2] = 0; c[2] < cells_.size[2]; ++c[2])
       for (c[1] = 0; c[1] < cells_.size[1]; ++c[1])
@@ -93,10 +99,12 @@ std::array<int, 2> images(double low, double high, int begin, int size, int n, S
 
 }  // namespace
 
-MovingShape::MovingShape(MeshSolid at_rest, const RadiusShift& shift, std::optional<double> drum)
+MovingShape::MovingShape(MeshSolid at_rest, const RadiusShift& shift, std::optional<double> drum,
+                         bool steady)
     : at_rest_(std::move(at_rest)),
       shift_(shift),
       drum_(drum),
+      steady_(steady),
       bend_(mean_curvatures(*at_rest_.mesh)),
       mesh_(*at_rest_.mesh) {}
 
@@ -143,10 +151,10 @@ void MovingShape::map_image(const Vec3& offset, const Domain& domain, const Bloc
   Block around = cells;  // what the core is found from
   Cell3 from{0, 0, 0}, to = cells.size;
   for (int a = 0; a < domain.dimension(); ++a) {
-    int begin = cells.begin[a] - kCoreCells, end = cells.begin[a] + cells.size[a] + kCoreCells;
+    int begin = cells.begin[a] - kMargin, end = cells.begin[a] + cells.size[a] + kMargin;
     if (!at_rest_.hollow) {
-      begin = std::max(begin, static_cast<int>(std::floor(low[a])) - kCoreCells);
-      end = std::min(end, static_cast<int>(std::ceil(high[a])) + kCoreCells);
+      begin = std::max(begin, static_cast<int>(std::floor(low[a])) - kMargin);
+      end = std::min(end, static_cast<int>(std::ceil(high[a])) + kMargin);
     }
     if (begin >= end) return;
     around.begin[a] = begin;
@@ -158,6 +166,7 @@ void MovingShape::map_image(const Vec3& offset, const Domain& domain, const Bloc
   Region region(around);
   region.fill(image, bend_, at_rest_.hollow, shift_);
   region.mark_core(domain.dimension());
+  if (steady_) region.mark_wall(domain.dimension());
   const Vec3 centre = this->centre() + offset;
   const bool flat = domain.dimension() == 2;
   std::vector<double> inner;

@@ -205,7 +205,9 @@ void add_shape(const Scene& s, const Plan& p, const Geometry& shape, const Obsta
   };
   const std::optional<double> half_way =
       o.drum() ? std::optional(0.5 * o.diameter / p.units.dx + 0.5 * kDrumWall) : std::nullopt;
-  fluid.add(std::get<MeshSolid>(shape.shape), pose, half_way);
+  const bool steady = o.motion->surface_only && (o.motion->kind == MotionScene::Kind::Linear ||
+                                                 o.motion->kind == MotionScene::Kind::Rotation);
+  fluid.add(std::get<MeshSolid>(shape.shape), pose, half_way, steady);
 } catch (const std::invalid_argument& error) {
   throw InputError(s.file + ": obstacle.mesh", error.what(),
                    "turn it outwards, or leave the inner shell out");
