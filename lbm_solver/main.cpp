@@ -18,6 +18,7 @@
 #include "lbm_solver/io/scene_keys.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "protocol/program/command_line.h"
+#include "protocol/program/mpi_start.h"
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 #include "protocol/transport/mpi_channel.h"
@@ -184,9 +185,7 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
                             ? scene.coupling->timeout
                             : protocol::seconds_from_environment("BPLBM_TIMEOUT", kAloneSeconds));
   check_until(scene, o.run);
-  int rank = 0;
-  MPI_Comm_rank(world.local, &rank);
-  std::optional<Restart> restart = find_restart(scene, o.run.out, o.run.restart, rank == 0);
+  std::optional<Restart> restart = find_restart(scene, o.run.out, o.run.restart);
   const Plan plan = make_plan(scene, restart ? std::optional(restart->step) : std::nullopt);
   if (restart) check_same_scene(*restart, scene, plan, o.run.restart);
   const Decomposition ranks = divide(o, scene, plan, world.local);
@@ -237,8 +236,11 @@ int main(int argc, char** argv) {
       return protocol::exit_code_of(error);
     }
 
-  int level = 0;
-  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
+  {
+    const protocol::MpiStart bounded("lbm", connect_timeout_in(options.scene));
+    int level = 0;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
+  }
   protocol::catch_signals();
   std::unique_ptr<protocol::Channel> channel;
   protocol::World world;

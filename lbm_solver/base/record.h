@@ -9,10 +9,12 @@
 #include <variant>
 #include <vector>
 
+#include "lbm_solver/base/cell_values.h"
+
 namespace lbm {
 
-/// What an object needs to go on as if it had never stopped: its values, and those of its parts,
-/// by name. Every class whose state a checkpoint keeps has `Record save() const` and
+/// What an object needs to go on as if it had never stopped: its values, those of cells, and those
+/// of its parts, by name. Every class whose state a checkpoint keeps has `Record save() const` and
 /// `void load(const Record&)`, which stand side by side and name the same values.
 class Record {
  public:
@@ -21,6 +23,7 @@ class Record {
 
   void set(const std::string& name, Value value) { values_[name] = std::move(value); }
   void set(const std::string& name, Record part) { parts_[name] = std::move(part); }
+  void set(const std::string& name, CellValues values) { cells_[name] = std::move(values); }
 
   /// @throws std::invalid_argument  there is no such value, or it is of another type
   template <class T>
@@ -48,14 +51,34 @@ class Record {
     return found->second;
   }
 
+  /// Values of the cells of a box. @throws std::invalid_argument  there are none, or of another box
+  const CellValues& cells(const std::string& name, const Cell3& box, int components) const {
+    const auto found = cells_.find(name);
+    if (found == cells_.end())
+      throw std::invalid_argument(
+          "'" + name + (values_.contains(name) ? "' is of an earlier version" : "' is missing"));
+    if (found->second.box != box || found->second.components != components)
+      throw std::invalid_argument("'" + name + "' is of another size");
+    return found->second;
+  }
+  /// The same record, which no longer depends on the objects that it was saved from.
+  Record kept() const {
+    Record record = *this;
+    for (auto& [name, values] : record.cells_) values = values.kept();
+    for (auto& [name, part] : record.parts_) part = part.kept();
+    return record;
+  }
+
   const std::map<std::string, Value>& values() const { return values_; }
   std::map<std::string, Value>& values() { return values_; }
   const std::map<std::string, Record>& parts() const { return parts_; }
+  const std::map<std::string, CellValues>& cells() const { return cells_; }
   bool operator==(const Record&) const = default;
 
  private:
   std::map<std::string, Value> values_;
   std::map<std::string, Record> parts_;
+  std::map<std::string, CellValues> cells_;
 };
 
 }  // namespace lbm

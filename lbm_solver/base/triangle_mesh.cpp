@@ -171,6 +171,17 @@ TriangleMesh box_surface(const Vec3& low, const Vec3& high) {
   return mesh;
 }
 
+TriangleMesh cylinder_surface(const Vec3& from, const Vec3& to, double radius) {
+  const Vec3 axis = (to - from).normalized();
+  int across = 0;  // the box's axis that the cylinder's is farthest from
+  axis.cwiseAbs().minCoeff(&across);
+  const Vec3 first = cross(axis, Vec3::Unit(across)).normalized(), second = cross(axis, first);
+  TriangleMesh mesh = round_surface(Vec3::Zero(), radius, 2);  // along z from -1 to 1
+  for (Vec3& v : mesh.vertices)
+    v = 0.5 * (from + to) + v.x() * first + v.y() * second + 0.5 * v.z() * (to - from);
+  return mesh;
+}
+
 /// Rings of corners from below to above, closed by a corner at each end.
 TriangleMesh round_surface(const Vec3& centre, double radius, int dimension) {
   constexpr unsigned around = 256;

@@ -44,6 +44,9 @@ TriangleMesh box_surface(const Vec3& low, const Vec3& high);
 /// dimensions; of the volume of the round one.
 TriangleMesh round_surface(const Vec3& centre, double radius, int dimension);
 
+/// A cylinder between the centres of its ends, of the volume of the round one.
+TriangleMesh cylinder_surface(const Vec3& from, const Vec3& to, double radius);
+
 /// A closed surface around the layer that lies within half a thickness of a surface, which may
 /// have rims.
 TriangleMesh thickened(const TriangleMesh& mesh, double thickness);

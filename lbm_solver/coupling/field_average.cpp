@@ -47,43 +47,40 @@ void FieldAverage::add(double time, Fluid& fluid) {
     }
 }
 
-/// Of the deviations; not a number where nothing was counted.
-std::vector<float> FieldAverage::rms(const Moments& of, const std::vector<double>* counts) const {
-  std::vector<float> values;
-  for (std::size_t i = 0; i < of.squares.size(); ++i) {
-    const double count = counts ? (*counts)[i] : static_cast<double>(samples_);
-    values.push_back(static_cast<float>(std::sqrt(of.squares[i] / count)));
-  }
-  return values;
-}
-
 void FieldAverage::write(const std::string& folder, const Units& units) const {
   if (samples_ == 0) return;
-  const auto scaled = [](std::vector<float> values, double unit) {
-    for (float& v : values) v = static_cast<float>(v * unit);
-    return values;
+  const auto count = static_cast<double>(samples_);
+  const CellFields fields{
+      {{"velocity_mean", "m/s", 3},
+       {"velocity_rms", "m/s", 3},
+       {"pressure_mean", "Pa", 1},
+       {"pressure_rms", "Pa", 1}},
+      [&](const CellRange& piece, std::span<float> to) { fill(piece, to, units, count); }};
+  write_averages(folder, {from_, to_, samples_, fields}, units, ranks_);
+}
+
+/// The four fields of a piece. The root mean square is that of the deviations; the pressure is not
+/// a number where there never was fluid.
+void FieldAverage::fill(const CellRange& piece, std::span<float> to, const Units& units,
+                        double count) const {
+  const auto single = [](double value, double unit) {
+    return static_cast<float>(static_cast<float>(value) * unit);
   };
-  const auto vectors = [&](const std::array<std::vector<float>, 3>& components) {
-    std::vector<float> all;
-    for (std::size_t i = 0; i < components[0].size(); ++i)
-      for (const auto& component : components)
-        all.push_back(static_cast<float>(component[i] * units.velocity()));
-    return ranks_.gather(std::move(all), 3);
-  };
-  const auto single = [](const std::vector<double>& v) {
-    return std::vector<float>(v.begin(), v.end());
-  };
-  FieldAverages a{from_, to_, samples_, {}, {}, {}, {}};
-  a.velocity_mean =
-      vectors({single(velocity_[0].mean), single(velocity_[1].mean), single(velocity_[2].mean)});
-  a.velocity_rms =
-      vectors({rms(velocity_[0], nullptr), rms(velocity_[1], nullptr), rms(velocity_[2], nullptr)});
-  std::vector<float> pressure = single(pressure_.mean);
-  for (std::size_t i = 0; i < pressure.size(); ++i)
-    if (fluid_[i] == 0.0) pressure[i] = std::numeric_limits<float>::quiet_NaN();
-  a.pressure_mean = ranks_.gather(scaled(std::move(pressure), units.pressure()), 1);
-  a.pressure_rms = ranks_.gather(scaled(rms(pressure_, &fluid_), units.pressure()), 1);
-  if (ranks_.rank() == 0) write_averages(folder, a, units, ranks_.domain());
+  const Cell3 &n = ranks_.cells().size, &first = ranks_.cells().begin;
+  const std::size_t cells = piece.count();
+  piece.each([&](const Cell3& c, std::size_t number) {
+    const std::size_t row = static_cast<std::size_t>(c[2] - first[2]) * n[1] + c[1] - first[1];
+    const std::size_t i = row * n[0] + c[0] - first[0];
+    for (std::size_t k = 0; k < 3; ++k) {
+      to[3 * number + k] = single(velocity_[k].mean[i], units.velocity());
+      to[3 * (cells + number) + k] =
+          single(std::sqrt(velocity_[k].squares[i] / count), units.velocity());
+    }
+    const bool none = fluid_[i] == 0.0;
+    to[6 * cells + number] = none ? std::numeric_limits<float>::quiet_NaN()
+                                  : single(pressure_.mean[i], units.pressure());
+    to[7 * cells + number] = single(std::sqrt(pressure_.squares[i] / fluid_[i]), units.pressure());
+  });
 }
 
 Record FieldAverage::save() const {
@@ -92,13 +89,13 @@ Record FieldAverage::save() const {
   record.set("from", from_);
   record.set("to", to_);
   const auto keep = [&](const std::string& name, const Moments& m) {
-    record.set(name + "_mean", ranks_.gather(m.mean, 1));
-    record.set(name + "_squares", ranks_.gather(m.squares, 1));
+    record.set(name + "_mean", ranks_.values_of(m.mean, 1));
+    record.set(name + "_squares", ranks_.values_of(m.squares, 1));
   };
   for (int k = 0; k < ranks_.domain().dimension(); ++k)
     keep(std::string("u") + "xyz"[k], velocity_[k]);
   keep("pressure", pressure_);
-  record.set("fluid", ranks_.gather(fluid_, 1));
+  record.set("fluid", ranks_.values_of(fluid_, 1));
   return record;
 }
 
@@ -106,10 +103,8 @@ void FieldAverage::load(const Record& record) {
   samples_ = record.integer("samples");
   from_ = record.real("from");
   to_ = record.real("to");
-  const Cell3 n = ranks_.domain().cells();
-  const std::size_t cells = static_cast<std::size_t>(n[0]) * n[1] * n[2];
   const auto take = [&](const std::string& name) {
-    return ranks_.scatter(record.list<double>(name, cells), 1);
+    return ranks_.own_values(record.cells(name, ranks_.domain().cells(), 1));
   };
   const auto restore = [&](const std::string& name, Moments& m) {
     m.mean = take(name + "_mean");

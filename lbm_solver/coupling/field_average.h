@@ -28,7 +28,7 @@ class FieldAverage {
   /// Writes `averages.h5` where there is a sample. Collective.
   void write(const std::string& folder, const Units& units) const;
 
-  /// Collective; complete on rank 0, and `load` wants it on every rank.
+  /// To be written before the next sample: its sums are read from here.
   Record save() const;
   /// @throws std::invalid_argument where it is of another box
   void load(const Record& record);
@@ -39,7 +39,7 @@ class FieldAverage {
     std::vector<double> mean, squares;
     void add(std::size_t cell, double value, double count);
   };
-  std::vector<float> rms(const Moments& of, const std::vector<double>* counts) const;
+  void fill(const CellRange& piece, std::span<float> to, const Units& units, double count) const;
 
   const Decomposition ranks_;
   const OutputTimes times_;

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/coupling/shown_cells.h"
 
 namespace lbm {
 namespace {
@@ -142,7 +143,10 @@ void Observers::measure(std::int64_t state, Fluid& fluid, bool last) {
     if (last || sensor->due(state)) sensor->write(time_of(state), fluid);
   if (!average_) return;
   if (average_->due(state)) average_->add(time_of(state), fluid);
-  if (last) average_->write(folder_, plan_.units);
+  if (!last) return;
+  const auto begin = std::chrono::steady_clock::now();
+  average_->write(folder_, plan_.units);
+  writing_["averages"] = seconds_since(begin);
 }
 
 void Observers::after_interval(std::int64_t state, Fluid& fluid, const Particles* particles) {
@@ -285,47 +289,17 @@ void Observers::add_particles(const Particles& particles, FieldFrame& frame) con
 }
 
 void Observers::write_fields(double time, Fluid& fluid, const Particles* particles) {
-  const Cell3& n = fluid.cells().size;
+  const auto begin = std::chrono::steady_clock::now();
   FieldFrame frame;
   frame.time = time;
-  frame.nx = plan_.domain.nx;
-  frame.ny = plan_.domain.ny;
-  frame.nz = plan_.domain.nz;
-  const auto nx = static_cast<std::size_t>(n[0]);
-  std::vector<double> rho(nx), u[3], nu(nx);
-  for (auto& component : u) component.assign(nx, 0.0);
-  const double viscosity = plan_.units.dx * plan_.units.dx / plan_.units.dt;
-  std::vector<float> arrived;  // momentum [nz][ny][nx][3]
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y) {
-      fluid.row(y, z, rho, {u[0], u[1], u[2]});
-      if (scene_.output.viscosity) row_viscosity(fluid, plan_.kernel.parameters, y, z, nu);
-      for (int x = 0; x < n[0]; ++x) {
-        if (scene_.output.viscosity)
-          frame.viscosity.push_back(static_cast<float>(nu[x] * viscosity));
-        if (fluid.cover())
-          for (const double component : fluid.arrived_momentum(x, y, z))
-            arrived.push_back(static_cast<float>(component));
-        frame.pressure.push_back(static_cast<float>((rho[x] - 1.0) * plan_.units.pressure()));
-        for (const auto& component : u)
-          frame.velocity.push_back(static_cast<float>(component[x] * plan_.units.velocity()));
-        if (fluid.has_solids())
-          frame.solid_fraction.push_back(static_cast<float>(fluid.solid_fraction(x, y, z)));
-      }
-    }
-  if (fluid.cover()) {  // summed in the order of the box: the same on any number of ranks
-    arrived = ranks_.gather(std::move(arrived), 3);
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < arrived.size(); ++i) sum[static_cast<int>(i % 3)] += arrived[i];
-    const double cells = static_cast<double>(frame.nx) * frame.ny * frame.nz;
-    frame.flux = sum / cells * plan_.units.velocity();
-  }
-  frame.pressure = ranks_.gather(std::move(frame.pressure), 1);
-  frame.velocity = ranks_.gather(std::move(frame.velocity), 3);
-  if (scene_.output.viscosity) frame.viscosity = ranks_.gather(std::move(frame.viscosity), 1);
-  if (fluid.has_solids()) frame.solid_fraction = ranks_.gather(std::move(frame.solid_fraction), 1);
+  frame.cells = shown_cells(fluid, plan_, scene_.output.viscosity);
+  if (fluid.cover()) frame.flux = mean_arrived_momentum(fluid) * plan_.units.velocity();
   if (particles) add_particles(*particles, frame);
-  if (fields_) fields_->write(frame);
+  if (fields_)
+    fields_->write(frame, ranks_);
+  else
+    lbm::write_fields(-1, frame.cells, scene_.box.dimension, ranks_);
+  writing_["fields"] += seconds_since(begin);
 }
 
 void Observers::report_progress(std::int64_t state, const Particles* particles) {
@@ -355,6 +329,7 @@ Summary Observers::summary(double wall_seconds) const {
   s.wall_seconds = wall_seconds;
   s.mlups = static_cast<double>(cells) * static_cast<double>(intervals_done_ - first_) *
             plan_.fluid_steps / wall_seconds * 1e-6;
+  s.writing = writing_;
   s.ma_max = max_speed_ * std::numbers::sqrt3;
   s.ma_paper = max_speed_;
   s.re = plan_.reynolds;

@@ -116,8 +116,9 @@ class Observers {
   std::optional<FieldAverage> average_;
   const std::string folder_;
   std::optional<SteadyWatch> steady_;
-  std::optional<FieldWriter> fields_;  // of rank 0, like the tables
-  bool fresh_ = true;                  // it does not go on from a checkpoint
+  std::optional<FieldWriter> fields_;      // of rank 0, like the tables
+  std::map<std::string, double> writing_;  // kind of file -> seconds
+  bool fresh_ = true;                      // it does not go on from a checkpoint
   std::int64_t first_, end_, guard_every_, intervals_done_ = 0;
   double max_speed_ = 0.0, last_speed_ = 0.0;  // of the fluid, lattice units
   SpeedRecord speeds_;

@@ -108,11 +108,10 @@ void check_solid_part(const Restart& restart, const std::string& from) {
 }
 
 Restart read_pair(const Scene& scene, const std::string& folder, const std::string& path,
-                  const RestartOptions& options, bool populations) {
+                  const RestartOptions& options) {
   Restart restart;
   restart.path = path;
-  restart.record = read_checkpoint(
-      path, populations ? std::set<std::string>{} : std::set<std::string>{"populations"});
+  restart.record = read_checkpoint(path);
   try {
     restart.interval = restart.record.integer("interval");
     restart.step = restart.record.real("time_step");
@@ -151,19 +150,19 @@ bool may_be_accepted(const std::string& key) {
 }
 
 std::optional<Restart> find_restart(const Scene& scene, const std::string& folder,
-                                    const RestartOptions& options, bool populations) {
+                                    const RestartOptions& options) {
   if (options.from.empty()) return std::nullopt;
   const std::string last = fluid_part(folder, options.from);
   const std::string before = fluid_part_before(folder, options.from);
   if (options.from == "fault" && !scene.coupling)
     throw InputError(last, "is kept by coupled runs only", "use --restart for the last checkpoint");
   try {
-    return read_pair(scene, folder, last, options, populations);
+    return read_pair(scene, folder, last, options);
   } catch (const InputError& error) {
     if (!fs::exists(before)) throw;
     const std::string problem = error.what();
     try {
-      Restart restart = read_pair(scene, folder, before, options, populations);
+      Restart restart = read_pair(scene, folder, before, options);
       restart.earlier = true;
       restart.remark = problem;
       return restart;

@@ -34,10 +34,9 @@ std::string fluid_part(const std::string& folder, const std::string& name);
 std::string fluid_part_before(const std::string& folder, const std::string& name);
 
 /// The last pair that is whole and undamaged; nothing where the run begins anew.
-/// @param populations  read them too: rank 0 alone needs them
 /// @throws InputError  there is none; says what is wrong with each
 std::optional<Restart> find_restart(const Scene& scene, const std::string& folder,
-                                    const RestartOptions& options, bool populations);
+                                    const RestartOptions& options);
 
 /// Refuses to go on with another scene than that of the checkpoint.
 /// @throws InputError  lists every difference: key, then, now

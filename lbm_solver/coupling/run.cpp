@@ -2,9 +2,12 @@
 #include "lbm_solver/coupling/run.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "lbm_solver/base/errors.h"
@@ -19,6 +22,14 @@
 
 namespace lbm {
 namespace {
+
+/// Bytes that this process has had in memory at most; 0 where the system does not tell.
+double peak_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return 1024.0 * std::strtod(line.c_str() + 6, nullptr);
+  return 0.0;
+}
 
 std::int64_t last_interval(const Plan& plan, const RunOptions& options) {
   if (!options.until) return plan.intervals;
@@ -37,6 +48,14 @@ Summary summarise(const Scene& scene, const RunOptions& options, const Fluid& fl
   summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   for (const auto& [part, seconds] : clock.parts())
     summary.time_share[part] = seconds / clock.total();
+  if (const auto found = clock.parts().find("checkpoint"); found != clock.parts().end())
+    summary.writing["checkpoints"] = found->second;
+  const double peak = peak_memory();
+  std::array<double, 1> all{peak};
+  const double largest = fluid.ranks().max(peak);
+  fluid.ranks().sum(all);
+  summary.peak_megabytes = {
+      {"first_rank", 1e-6 * peak}, {"largest", 1e-6 * largest}, {"all", 1e-6 * all[0]}};
   for (const auto& [part, bytes] : fluid.bytes()) summary.megabytes[part] = 1e-6 * bytes;
   return summary;
 }
@@ -147,6 +166,7 @@ class CoupledRun {
         break;
       }
       if (arrival.head.flags & protocol::kCheckpoint) write_checkpoint(interval);
+      stop_wished_ = arrival.head.flags & protocol::kStopWished;
       const bool last = arrival.head.flags & protocol::kLast;
       // a frame may find the disk full: until it is written both still stand at this interval
       if (times_.any() && observers_.draws_at(interval))
@@ -218,7 +238,7 @@ class CoupledRun {
   /// What the solid is told with the loads of an interval.
   std::uint32_t flags_after(std::int64_t interval) {
     const std::int64_t next = interval + 1;
-    const bool signalled = protocol::signalled() && times_.stop(next);
+    const bool signalled = (protocol::signalled() || stop_wished_) && times_.stop(next);
     const bool stop = next >= end_ || signalled;
     std::uint32_t flags = stop ? protocol::kStop : protocol::kContinue;
     if (stop || observers_.draws_at(next)) flags |= protocol::kWantBonds;
@@ -240,15 +260,14 @@ class CoupledRun {
 
   void write_state(const std::string& name, std::int64_t interval, const std::string& before) {
     const bool coupled = name == "checkpoint";  // at a fault, the other may not have its part yet
-    Record fluid = fluid_.save(), observers = observers_.save();
-    Record particles = memory_ ? *memory_ : particles_.save();
-    if (ranks_.rank() != 0) return;
     const protocol::SolidParts parts(options_.out + "/" + name);
-    Record record = checkpoint_record(scene_, plan_, interval, coupled ? parts.name(interval) : "");
-    record.set("fluid", std::move(fluid));
-    record.set("particles", std::move(particles));
-    record.set("observers", std::move(observers));
-    lbm::write_checkpoint(fluid_part(options_.out, name), record, interval, before);
+    Record record;
+    if (ranks_.rank() == 0)
+      record = checkpoint_record(scene_, plan_, interval, coupled ? parts.name(interval) : "");
+    record.set("fluid", fluid_.save());
+    record.set("particles", memory_ ? *memory_ : particles_.save());
+    record.set("observers", observers_.save());
+    lbm::write_checkpoint(fluid_part(options_.out, name), record, interval, before, &ranks_);
     clock_.charge("checkpoint");
   }
 
@@ -287,7 +306,8 @@ class CoupledRun {
   Observers observers_;
   const std::int64_t end_;
   const StopTimes times_;
-  bool keep_last_;  // the fluid's part that lies there is good
+  bool stop_wished_ = false;  // the solid was told to end
+  bool keep_last_;            // the fluid's part that lies there is good
   std::optional<std::int64_t> stands_at_ = start_.interval;  // no part of an interval is done
   Vec3 carried_ = Vec3::Zero();   // weight of the particles in the fluid [N]
   std::optional<Record> memory_;  // of particles_ before those of stands_at_ arrived
@@ -331,14 +351,15 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
   const std::int64_t first = fluid.steps();
   bool keep_last = !restart || !restart->earlier;
   const auto write_state = [&](std::int64_t step) {
-    Record of_fluid = fluid.save(), of_observers = observers.save();
-    if (ranks.rank() != 0) return;
-    Record record = checkpoint_record(scene, plan, step, "");
-    record.set("fluid", std::move(of_fluid));
-    record.set("observers", std::move(of_observers));
+    clock.charge("output");
+    Record record;
+    if (ranks.rank() == 0) record = checkpoint_record(scene, plan, step, "");
+    record.set("fluid", fluid.save());
+    record.set("observers", observers.save());
     write_checkpoint(fluid_part(options.out, "checkpoint"), record, step,
-                     keep_last ? fluid_part_before(options.out, "checkpoint") : "");
+                     keep_last ? fluid_part_before(options.out, "checkpoint") : "", &ranks);
     keep_last = true;
+    clock.charge("checkpoint");
   };
   Fluid::AfterStep add_loads;
   if (observers.sums())

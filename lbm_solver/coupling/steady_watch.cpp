@@ -39,8 +39,7 @@ Record SteadyWatch::save(const Decomposition& ranks) const {
   Record record;
   record.set("steady", std::int64_t{steady_});
   record.set("looked", std::int64_t{!before_.empty()});
-  record.set("velocities",
-             before_.empty() ? std::vector<double>() : ranks.gather(std::vector(before_), 3));
+  if (!before_.empty()) record.set("velocities", ranks.values_of(before_, 3));
   return record;
 }
 
@@ -48,11 +47,7 @@ void SteadyWatch::load(const Record& record, const Decomposition& ranks) {
   steady_ = record.integer("steady") != 0;
   before_.clear();
   if (record.integer("looked") == 0) return;
-  std::vector<double> velocities;
-  const Cell3 all = ranks.domain().cells();
-  if (ranks.rank() == 0)
-    velocities = record.list<double>("velocities", std::size_t{3} * all[0] * all[1] * all[2]);
-  before_ = ranks.scatter(std::move(velocities), 3);
+  before_ = ranks.own_values(record.cells("velocities", ranks.domain().cells(), 3));
 }
 
 }  // namespace lbm

@@ -21,22 +21,6 @@ MPI_Datatype type_of() {
     return MPI_DOUBLE;
 }
 
-/// Copies a block's values between its own list and the list of the whole box.
-template <class T, class Copy>
-void each_row(const Domain& d, const Block& b, int components, T* global, Copy&& copy) {
-  std::size_t local = 0;
-  const std::size_t count = static_cast<std::size_t>(b.size[0]) * components;
-  for (int z = 0; z < b.size[2]; ++z)
-    for (int y = 0; y < b.size[1]; ++y, local += count) {
-      const std::size_t row = static_cast<std::size_t>(z + b.begin[2]) * d.ny + y + b.begin[1];
-      copy(local, global + (row * d.nx + b.begin[0]) * components, count);
-    }
-}
-
-std::size_t volume(const Block& b) {
-  return static_cast<std::size_t>(b.size[0]) * b.size[1] * b.size[2];
-}
-
 }  // namespace
 
 Decomposition::Decomposition(const Domain& domain)
@@ -101,49 +85,57 @@ double Decomposition::max(double value) const {
 }
 
 template <class T>
-std::vector<T> Decomposition::gather(std::vector<T> local, int components) const {
-  if (alone()) return local;
-  if (rank_ != 0) {
-    MPI_Send(local.data(), static_cast<int>(local.size()), type_of<T>(), 0, kTag, comm_);
-    return {};
-  }
-  const Cell3 n = domain_.cells();
-  std::vector<T> global(static_cast<std::size_t>(n[0]) * n[1] * n[2] * components);
+void Decomposition::in_pieces(int numbers_a_cell, const MakePiece<T>& make,
+                              const TakePiece<T>& take) const {
+  std::vector<T> values;
+  const auto numbers = static_cast<std::size_t>(numbers_a_cell);
   for (int r = 0; r < size_; ++r) {
-    const Block block = cells_of(r);
-    if (r > 0) {
-      local.resize(volume(block) * components);
-      MPI_Recv(local.data(), static_cast<int>(local.size()), type_of<T>(), r, kTag, comm_,
-               MPI_STATUS_IGNORE);
+    if (rank_ != 0 && rank_ != r) continue;
+    for (const CellRange& piece : pieces_of(range_of(cells_of(r)), numbers * sizeof(T))) {
+      values.resize(numbers * piece.count());
+      const int count = static_cast<int>(values.size());
+      if (r == rank_)
+        make(piece, values);
+      else
+        MPI_Recv(values.data(), count, type_of<T>(), r, kTag, comm_, MPI_STATUS_IGNORE);
+      if (rank_ == 0)
+        take(piece, values);
+      else
+        MPI_Send(values.data(), count, type_of<T>(), 0, kTag, comm_);
     }
-    each_row(domain_, block, components, global.data(),
-             [&](std::size_t at, T* to, std::size_t k) { std::copy_n(&local[at], k, to); });
   }
-  return global;
 }
 
-template <class T>
-std::vector<T> Decomposition::scatter(std::vector<T> global, int components) const {
-  if (alone()) return global;
-  std::vector<T> mine(volume(cells_) * components);
-  if (rank_ != 0) {
-    MPI_Recv(mine.data(), static_cast<int>(mine.size()), type_of<T>(), 0, kTag, comm_,
-             MPI_STATUS_IGNORE);
-    return mine;
-  }
-  for (int r = size_ - 1; r >= 0; --r) {
-    const Block block = cells_of(r);
-    mine.resize(volume(block) * components);
-    each_row(domain_, block, components, global.data(),
-             [&](std::size_t at, T* from, std::size_t k) { std::copy_n(from, k, &mine[at]); });
-    if (r > 0) MPI_Send(mine.data(), static_cast<int>(mine.size()), type_of<T>(), r, kTag, comm_);
-  }
-  return mine;
+template void Decomposition::in_pieces(int, const MakePiece<float>&, const TakePiece<float>&) const;
+template void Decomposition::in_pieces(int, const MakePiece<double>&,
+                                       const TakePiece<double>&) const;
+
+CellValues Decomposition::values_of(const std::vector<double>& mine, int components) const {
+  const Cell3 n = cells_.size, first = cells_.begin;
+  const auto read = [list = mine.data(), n, first, components](const CellRange& piece,
+                                                               std::span<double> to) {
+    const auto count = static_cast<std::size_t>(components);
+    piece.each([&](const Cell3& c, std::size_t number) {
+      const std::size_t row = static_cast<std::size_t>(c[2] - first[2]) * n[1] + c[1] - first[1];
+      std::copy_n(list + (row * n[0] + c[0] - first[0]) * count, count,
+                  to.begin() + static_cast<std::ptrdiff_t>(number * count));
+    });
+  };
+  return {domain_.cells(), components, false, range_of(cells_), read};
 }
 
-template std::vector<float> Decomposition::gather(std::vector<float>, int) const;
-template std::vector<double> Decomposition::gather(std::vector<double>, int) const;
-template std::vector<double> Decomposition::scatter(std::vector<double>, int) const;
+std::vector<double> Decomposition::own_values(const CellValues& values) const {
+  const CellRange mine = range_of(cells_);
+  if (!values.here.holds(mine)) throw std::invalid_argument("values are of cells of another rank");
+  const auto count = static_cast<std::size_t>(values.components);
+  std::vector<double> list(count * mine.count());
+  std::size_t done = 0;  // pieces are in the order of the list
+  for (const CellRange& piece : pieces_of(mine, count * sizeof(double))) {
+    values.read(piece, std::span(list).subspan(done, count * piece.count()));
+    done += count * piece.count();
+  }
+  return list;
+}
 
 std::vector<double> Decomposition::collect(const std::vector<double>& local) const {
   if (alone()) return local;

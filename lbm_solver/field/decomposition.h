@@ -3,12 +3,18 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "lbm_solver/base/record.h"
 #include "lbm_solver/field/domain.h"
 
 namespace lbm {
+
+inline CellRange range_of(const Block& block) {
+  return {block.begin, block.size};
+}
 
 /// How the cells of the box are divided among the ranks of this program: a grid of blocks, each of
 /// about the same size. Rank 0 gathers what is written to files. All functions that say so are
@@ -39,12 +45,20 @@ class Decomposition {
   /// Largest over ranks; on every rank. Collective.
   double max(double value) const;
 
-  /// Values of every cell, [z][y][x][components], brought together on rank 0 (elsewhere empty), and
-  /// the other way. Collective.
+  /// Fills the numbers of a piece of this rank's cells; and what rank 0 does with those of any.
   template <class T>
-  std::vector<T> gather(std::vector<T> local, int components) const;
+  using MakePiece = std::function<void(const CellRange&, std::span<T>)>;
   template <class T>
-  std::vector<T> scatter(std::vector<T> global, int components) const;
+  using TakePiece = std::function<void(const CellRange&, std::span<const T>)>;
+  /// Numbers of every cell on rank 0, a piece after another, the ranks' own in rank order: no rank
+  /// needs room for more than one. `take` is called on rank 0 alone. Collective.
+  template <class T>
+  void in_pieces(int numbers_a_cell, const MakePiece<T>& make, const TakePiece<T>& take) const;
+  /// A list of this rank's cells, [z][y][x][components], as values of the box; it must outlive
+  /// them. And such a list from the values of any other ranks.
+  CellValues values_of(const std::vector<double>& mine, int components) const;
+  std::vector<double> own_values(const CellValues& values) const;
+
   /// The lists of all ranks in rank order, on rank 0 (elsewhere empty). Collective.
   std::vector<double> collect(const std::vector<double>& local) const;
   /// Lists of equal lengths, one of each rank, of which the sum over the ranks counts: on rank 0

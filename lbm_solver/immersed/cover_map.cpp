@@ -10,6 +10,7 @@
 #include "lbm_solver/base/contracts.h"
 #include "lbm_solver/immersed/clump_cover.h"
 #include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/immersed/mapped_radius.h"
 #include "lbm_solver/immersed/moving_shape.h"
 
 namespace lbm {
@@ -71,7 +72,7 @@ class Clumps {
     if (std::ranges::none_of(bodies, [](const Body& b) { return b.carrier != 0; })) return;
     for (std::size_t d = 0; d < bodies.size(); ++d) {
       mapped_.push_back(bodies[d]);
-      mapped_.back().radius = shift.radius(bodies[d].radius, bodies[d].hollow);
+      mapped_.back().radius = mapped_radius(shift, bodies[d].radius, bodies[d].hollow);
       if (bodies[d].carrier != 0) members_[bodies[d].carrier].push_back(d);
     }
   }
@@ -132,7 +133,7 @@ void CoverMap::update(std::span<const Body> bodies) {
   for (std::ptrdiff_t d = 0; d < n; ++d) {
     motions_[first + d] = {bodies[d].velocity, bodies[d].spin};
     Body mapped = bodies[d];
-    mapped.radius = shift_.radius(mapped.radius, mapped.hollow);
+    mapped.radius = mapped_radius(shift_, mapped.radius, mapped.hollow);
     change[d] = footprints_[d].look(mapped, domain_, cells_);
     if (change[d] == Footprint::Change::Fractions && bodies[d].carrier == 0) footprints_[d].write();
     other_spans = other_spans || change[d] == Footprint::Change::Spans;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lbm_solver/immersed/footprint.h"
+#include "lbm_solver/immersed/mapped_radius.h"
 #include "lbm_solver/immersed/mesh_fractions.h"
 
 namespace lbm {
@@ -48,7 +49,7 @@ void fill_ball(const Ball& ball, const Domain& domain, const Block& cells, const
                const Take& take) {
   Body body;
   body.centre = ball.centre;
-  body.radius = shift.radius(ball.radius, ball.hollow);
+  body.radius = mapped_radius(shift, ball.radius, ball.hollow);
   body.hollow = ball.hollow;
   Footprint footprint;
   footprint.look(body, domain, cells);

@@ -174,7 +174,10 @@ void fill_mesh(const TriangleMesh& mesh, const std::vector<double>& curvatures, 
                const Block& cells, const RadiusShift& shift,
                const std::function<void(const FractionSpan&)>& take) {
   std::vector<double> bend = curvatures;
-  for (double& b : bend) b *= (hollow ? -1.0 : 1.0) * shift.curvature;
+  for (double& b : bend) {
+    if (std::abs(b) > 1.0) b = 1.0 / b;  // smaller than RadiusShift knows
+    b *= (hollow ? -1.0 : 1.0) * shift.curvature;
+  }
   Layer layer(cells, shift.plane);
   std::vector<double> row(cells.size[0]);
   const auto lists = by_layer(mesh, cells.begin[2], cells.size[2]);

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "lbm_solver/io/hdf5_array.h"
+#include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
 namespace {
@@ -41,7 +41,9 @@ void write_xdmf(const std::string& path, double time, const Units& units, const 
 }  // namespace
 
 void write_averages(const std::string& folder, const FieldAverages& a, const Units& units,
-                    const Domain& domain) {
+                    const Decomposition& ranks) {
+  const Domain& domain = ranks.domain();
+  if (ranks.rank() != 0) return write_fields(-1, a.cells, domain.dimension(), ranks);
   using protocol::hdf5::set_attribute;
   const auto file =
       protocol::hdf5::open_file(folder + "/averages.h5", protocol::hdf5::Open::Create);
@@ -53,16 +55,7 @@ void write_averages(const std::string& folder, const FieldAverages& a, const Uni
   set_attribute(file, "samples", static_cast<double>(a.samples));
   for (int k = 0; k < domain.dimension(); ++k)
     set_attribute(file, std::string("origin_") + "xyz"[k], units.origin[k]);
-  std::vector<hsize_t> cells;
-  if (domain.dimension() == 3) cells.push_back(domain.nz);
-  cells.push_back(domain.ny);
-  cells.push_back(domain.nx);
-  std::vector<hsize_t> vectors = cells;
-  vectors.push_back(3);
-  write_array(file, "velocity_mean", a.velocity_mean, vectors, "m/s");
-  write_array(file, "velocity_rms", a.velocity_rms, vectors, "m/s");
-  write_array(file, "pressure_mean", a.pressure_mean, cells, "Pa");
-  write_array(file, "pressure_rms", a.pressure_rms, cells, "Pa");
+  write_fields(file, a.cells, domain.dimension(), ranks);
   write_xdmf(folder + "/averages.xdmf", a.to, units, domain);
 }
 

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/cell_set.h"
 #include "protocol/program/checksum.h"
 #include "protocol/program/input_file.h"
 #include "protocol/transport/hdf5_file.h"
@@ -98,13 +99,20 @@ struct ValueWriter {
   }
 };
 
-void write_record(hid_t group, const Record& record) {
+void write_record(hid_t group, const Record& record, const Decomposition* ranks) {
   for (const auto& [name, value] : record.values()) std::visit(ValueWriter{group, name}, value);
+  for (const auto& [name, values] : record.cells()) write_values(group, name, values, ranks);
   for (const auto& [name, part] : record.parts()) {
     const Handle inner(H5Gcreate2(group, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                        H5Gclose, "create " + name);
-    write_record(inner, part);
+    write_record(inner, part, ranks);
   }
+}
+
+/// What other ranks do meanwhile.
+void send_cells(const Record& record, const Decomposition* ranks) {
+  for (const auto& [name, values] : record.cells()) write_values(-1, name, values, ranks);
+  for (const auto& [name, part] : record.parts()) send_cells(part, ranks);
 }
 
 herr_t collect_link(hid_t, const char* name, const H5L_info_t* info, void* names) {
@@ -135,8 +143,7 @@ std::string read_text(hid_t set, hid_t type, const std::string& name, std::uintm
   return text;
 }
 
-Record::Value read_data(hid_t group, const std::string& name, std::uintmax_t most) {
-  const Handle set(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + name);
+Record::Value read_data(hid_t set, const std::string& name, std::uintmax_t most) {
   const Handle type(H5Dget_type(set), H5Tclose, "read the type of " + name);
   switch (H5Tget_class(type)) {
     case H5T_INTEGER:
@@ -162,10 +169,11 @@ Record::Value read_number(hid_t group, const std::string& name) {
 }
 
 struct RecordReader {
-  const std::set<std::string>& without;
+  const std::string& path;
   std::uintmax_t most;  // bytes of the file
 
-  Record read(hid_t group, int depth) const {
+  /// @param inside  path of the group in the file, with a slash behind it
+  Record read(hid_t group, const std::string& inside, int depth) const {
     if (depth > kDeepest) throw std::runtime_error("its parts lie too deep");
     Record record;
     std::vector<std::string> names;
@@ -176,15 +184,18 @@ struct RecordReader {
     check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_link, &names),
           "list its parts");
     for (const std::string& name : names) {
-      if (without.contains(name)) continue;
       H5O_info_t info;
       check(H5Oget_info_by_name(group, name.c_str(), &info, H5P_DEFAULT), "look at " + name);
-      if (info.type != H5O_TYPE_GROUP) {
-        record.set(name, read_data(group, name, most));
+      if (info.type == H5O_TYPE_GROUP) {
+        const Handle part(H5Gopen2(group, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
+        record.set(name, read(part, inside + name + "/", depth + 1));
         continue;
       }
-      const Handle part(H5Gopen2(group, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
-      record.set(name, read(part, depth + 1));
+      const Handle set(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose, "open " + name);
+      if (has_cells(set))
+        record.set(name, values_in(set, path, inside + name));
+      else
+        record.set(name, read_data(set, name, most));
     }
     return record;
   }
@@ -214,11 +225,12 @@ void keep_as(const std::string& path, const std::string& before) {
 }  // namespace
 
 void write_checkpoint(const std::string& path, const Record& record, std::int64_t interval,
-                      const std::string& before) {
+                      const std::string& before, const Decomposition* ranks) {
+  if (ranks && ranks->rank() != 0) return send_cells(record, ranks);
   const std::string part = path + ".part";
   {
     const Handle file = protocol::hdf5::open_file(part, Open::Create);
-    write_record(file, record);
+    write_record(file, record, ranks);
     check(H5Fflush(file, H5F_SCOPE_GLOBAL), "flush a checkpoint (is the disk full?)");
   }
   const auto content = protocol::fingerprint(part);
@@ -232,19 +244,19 @@ void write_checkpoint(const std::string& path, const Record& record, std::int64_
     throw InputError(path, "cannot be replaced", "is the folder writable?");
 }
 
-Record read_record(const std::string& path, const std::set<std::string>& without) {
+Record read_record(const std::string& path) {
   const Handle file = protocol::hdf5::open_file(path, Open::Read);
-  return RecordReader{without, fs::file_size(path)}.read(file, 0);
+  return RecordReader{path, fs::file_size(path)}.read(file, "/", 0);
 }
 
-Record read_checkpoint(const std::string& path, const std::set<std::string>& without) {
+Record read_checkpoint(const std::string& path) {
   if (const std::string problem = protocol::why_unreadable(path); !problem.empty())
     throw InputError(path, fs::exists(path) ? problem : "no checkpoint to restart from",
                      "run first with run.checkpoint_every in the scene, and the same --out");
   if (const std::string problem = why_damaged(path); !problem.empty())
     throw InputError(path, problem, kAsNoOther);
   try {
-    return read_record(path, without);
+    return read_record(path);
   } catch (const std::runtime_error& error) {
     throw InputError(path, fmt::format("cannot be read: {}", error.what()), kAsNoOther);
   }

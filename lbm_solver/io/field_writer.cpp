@@ -144,7 +144,7 @@ bool FieldWriter::keep_frames(double until) {
   }
 }
 
-void FieldWriter::write(const FieldFrame& f) {
+void FieldWriter::write(const FieldFrame& f, const Decomposition& ranks) {
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Append);
   const std::string name = group_name(entries_.size());
   const Handle group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
@@ -153,22 +153,16 @@ void FieldWriter::write(const FieldFrame& f) {
   for (int k = 0; f.flux && k < dimension_; ++k)
     protocol::hdf5::set_attribute(group, std::string("flux_") + "xyz"[k], (*f.flux)[k]);
   const std::size_t bonds = f.bond_state.size();
+  const Cell3 n = ranks.domain().cells();
   const Entry entry{f.time,
-                    f.nx,
-                    f.ny,
-                    f.nz,
-                    !f.solid_fraction.empty(),
-                    !f.viscosity.empty(),
+                    n[0],
+                    n[1],
+                    n[2],
+                    f.cells.has("solid_fraction"),
+                    f.cells.has("viscosity"),
                     f.particles.size(),
                     f.bond_state};
-  std::vector<hsize_t> cells;
-  for (const auto n : shape(entry)) cells.push_back(n);
-  std::vector<hsize_t> vectors = cells;
-  vectors.push_back(3);
-  write_array(group, "pressure", f.pressure, cells, "Pa");
-  write_array(group, "velocity", f.velocity, vectors, "m/s");
-  if (entry.solids) write_array(group, "solid_fraction", f.solid_fraction, cells, "1");
-  if (entry.viscosity) write_array(group, "viscosity", f.viscosity, cells, "m2/s");
+  write_fields(group, f.cells, dimension_, ranks);
   write_particles(group, f);
   if (bonds > 0) {
     const auto d = static_cast<hsize_t>(dimension_);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lbm_solver/base/units.h"
+#include "lbm_solver/io/cell_set.h"
 #include "protocol/transport/hdf5_file.h"
 #include "protocol/wire/session.h"
 
@@ -15,11 +16,9 @@ namespace lbm {
 /// One picture of the fluid and its particles, SI units.
 struct FieldFrame {
   double time = 0.0;  ///< [s]
-  int nx = 0, ny = 0, nz = 1;
-  std::vector<float> pressure;        ///< [nz][ny][nx], against rest and hydrostatic [Pa]
-  std::vector<float> velocity;        ///< [nz][ny][nx][3] [m/s]
-  std::vector<float> solid_fraction;  ///< [nz][ny][nx]; empty without solids
-  std::vector<float> viscosity;       ///< [nz][ny][nx], kinematic [m²/s]; empty: not asked for
+  /// pressure against rest and hydrostatic [Pa], velocity [m/s] and, where there are any, solid
+  /// fraction and kinematic viscosity [m²/s]
+  CellFields cells;
   /// Mean over the box of the momentum that has arrived, over the density at rest [m/s]: in steady
   /// flow the flux through every face of the box, covered cells too, under every solid term.
   std::optional<Vec3> flux;
@@ -44,7 +43,8 @@ class FieldWriter {
   /// @param keep_until  a run that goes on keeps the frames before this time
   FieldWriter(const std::string& folder, const Units& units, int dimension = 2,
               double keep_until = 0.0);
-  void write(const FieldFrame& frame);
+  /// Collective: other ranks than the first, which alone has a writer, call `write_fields`.
+  void write(const FieldFrame& frame, const Decomposition& ranks);
 
  private:
   void write_xdmf() const;

@@ -22,8 +22,10 @@ void write_array(hid_t group, const char* name, const std::vector<T>& data,
   const protocol::hdf5::Handle space(
       H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
       "make a space");
+  const protocol::hdf5::Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make properties");
+  protocol::hdf5::check(H5Pset_obj_track_times(how, 0), "set properties");  // as in cell_set.cpp
   const protocol::hdf5::Handle set(
-      H5Dcreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose,
+      H5Dcreate2(group, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose,
       std::string("create ") + name);
   protocol::hdf5::set_attribute(set, columns ? "units" : "unit", std::string(unit));
   if (columns) protocol::hdf5::set_attribute(set, "columns", std::string(columns));

@@ -216,6 +216,25 @@ MeshScene box_mesh(Vec3 low, Vec3 high, const BoxScene& box) {
   return scene;
 }
 
+/// A rod, or with `hollow` a bore, as a mesh.
+MeshScene read_cylinder(TableReader& t, const BoxScene& box) {
+  if (box.dimension == 2)
+    t.fail("diameter", "stands beside from and to: a cylinder is there in three dimensions only",
+           "give centre and diameter for a disc, or from and to for a block");
+  const Vec3 from = t.vector("from", 3, "[m], the centre of an end of the cylinder");
+  const Vec3 to = t.vector("to", 3, "[m], the centre of its other end");
+  if (from == to) t.fail("to", "is equal to from", "give the centres of both ends of the cylinder");
+  TriangleMesh surface =
+      cylinder_surface(from, to, 0.5 * t.number("diameter", Bounds::positive(), "m"));
+  MeshScene mesh;
+  mesh.file = "of a cylinder";
+  mesh.hollow = t.flag_or("hollow", false);
+  check_size(t, surface, box);
+  mesh.volume = enclosed_volume(surface);
+  mesh.surface = std::make_shared<const TriangleMesh>(std::move(surface));
+  return mesh;
+}
+
 /// Its middle, about which it turns where nothing else is said.
 Vec3 middle_of(const ObstacleScene& o) {
   if (o.round) return o.centre;
@@ -259,6 +278,8 @@ ObstacleScene read_obstacle(TableReader t, const std::string& scene_file, const 
   } else if (t.has("image")) {
     o.round = false;
     o.image = read_image(t, scene_file, box);
+  } else if (!o.round && t.has("from") && t.has("diameter")) {
+    o.mesh = read_cylinder(t, box);
   } else if (o.round) {
     o.centre = t.vector("centre", d, "[m]");
     o.diameter = t.number("diameter", Bounds::positive(), "m");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "lbm_solver/base/errors.h"
@@ -204,6 +205,15 @@ Scene read_scene(const std::vector<std::string>& files) {
   toml::table merged = parse(files.front());
   for (std::size_t i = 1; i < files.size(); ++i) overlay(merged, parse(files[i]));
   return read_tables(merged, files, nullptr);
+}
+
+double connect_timeout_in(const std::vector<std::string>& files) {
+  double seconds = CouplingScene().connect_timeout;
+  for (const std::string& file : files) try {
+      seconds = toml::parse_file(file)["coupling"]["connect_timeout"].value_or(seconds);
+    } catch (const toml::parse_error&) {  // read_scene says it
+    }
+  return std::isfinite(seconds) && seconds > 0.0 ? seconds : CouplingScene().connect_timeout;
 }
 
 void note_keys(const std::string& scene, KeyNotes& keys) {

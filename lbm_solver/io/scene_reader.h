@@ -14,6 +14,10 @@ namespace lbm {
 ///         value outside its range
 Scene read_scene(const std::vector<std::string>& files);
 
+/// coupling.connect_timeout of a scene [s], before anything else of it is read; its default where
+/// the files do not say or cannot be read.
+double connect_timeout_in(const std::vector<std::string>& files);
+
 class KeyNotes;
 /// Notes the keys that are asked for while this scene, a text, is read.
 void note_keys(const std::string& scene, KeyNotes& keys);

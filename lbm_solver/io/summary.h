@@ -22,9 +22,12 @@ struct Summary {
   double mlups = 0.0;  ///< million lattice updates a second of wall time, everything included
   std::map<std::string, double> time_share;  ///< part -> fraction of the wall time
   std::map<std::string, double> megabytes;   ///< part of the fluid's memory -> its size
-  double waiting = 0.0;                      ///< seconds spent waiting for the solid
-  double ma_max = 0.0;                       ///< max |u| / c_s
-  double ma_paper = 0.0;                     ///< max |u| / C
+  /// Most memory that the first rank, any and all of them had, with what the system counts in.
+  std::map<std::string, double> peak_megabytes;
+  std::map<std::string, double> writing;  ///< kind of file -> seconds
+  double waiting = 0.0;                   ///< seconds spent waiting for the solid
+  double ma_max = 0.0;                    ///< max |u| / c_s
+  double ma_paper = 0.0;                  ///< max |u| / C
   double re = 0.0, re_h = 0.0;
   double mass_drift = 0.0;                   ///< relative
   std::map<std::string, double> parameters;  ///< what a reader needs to interpret the results

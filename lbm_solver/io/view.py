@@ -41,7 +41,7 @@ def need_screen():
     if shutil.which("xvfb-run") is None:
         sys.exit("view | error | there is no screen (DISPLAY) to draw on; install xvfb and xauth, or log in with one")
     program = os.path.basename(os.readlink("/proc/self/exe")).partition("-")[0]
-    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1600x1400x24", program, os.path.join(folder(), "view.py"),
+    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1600x1400x24 -noreset", program, os.path.join(folder(), "view.py"),
                            *sys.argv[1:]])
 
 

@@ -151,9 +151,10 @@ class Fluid {
   /// @param rho, u  [nx] each, overwritten
   void row(int y, int z, std::span<double> rho, const RowVelocity& u);
 
-  /// Everything that the coming steps depend on; it knows nothing of the ranks, and is complete on
-  /// rank 0. Obstacles and boundaries must be in place again before `load`, which wants the same
-  /// record on every rank but for `populations`, which rank 0 alone needs. Collective.
+  /// Everything that the coming steps depend on; it knows nothing of the ranks. All but the
+  /// populations is complete on rank 0; those are read from the fluid when they are written, so
+  /// before its next step. Obstacles and boundaries must be in place again before `load`, which
+  /// wants the same record on every rank, with the populations of its cells. Collective.
   /// @throws std::invalid_argument where the record is of another fluid
   Record save() const;
   void load(const Record& record);
@@ -174,6 +175,7 @@ class Fluid {
   void remember_loads();
   Record save_boundary(std::size_t number) const;
   void load_boundary(std::size_t number, const Record& record);
+  void load_populations(const CellValues& populations);
   void moments(int y, int z, std::span<double> rho, const RowVelocity& u, std::span<double> solid);
   void cover_by(const Body& body, int y, int z, const RowVelocity& u, std::span<double> solid);
 

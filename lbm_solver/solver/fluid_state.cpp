@@ -5,18 +5,6 @@
 #include "lbm_solver/solver/fluid.h"
 
 namespace lbm {
-namespace {
-
-/// Calls f(number, cell) for every cell of a block, in the order of Decomposition::gather.
-template <class F>
-void each_cell(const Cell3& n, F&& f) {
-  std::size_t number = 0;
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x) f(number++, x, y, z);
-}
-
-}  // namespace
 
 Record Fluid::save_boundary(std::size_t number) const {
   Patch& patch = *patches_[number];
@@ -47,13 +35,17 @@ void Fluid::load_boundary(std::size_t number, const Record& record) {
 
 Record Fluid::save() const {
   Record record;
-  const auto q_count = static_cast<std::size_t>(lattice().Q);
-  const Cell3& n = cells().size;
-  std::vector<double> mine(q_count * n[0] * n[1] * n[2]);
-  each_cell(n, [&](std::size_t number, int x, int y, int z) {
-    for (int q = 0; q < lattice().Q; ++q) mine[number * q_count + q] = arriving(q, x, y, z);
-  });
-  record.set("populations", ranks_->gather(std::move(mine), lattice().Q));
+  const auto read = [this](const CellRange& piece, std::span<double> to) {
+    const auto q_count = static_cast<std::size_t>(lattice().Q);
+    const Cell3& first = cells().begin;
+    piece.each([&](const Cell3& c, std::size_t number) {
+      for (int q = 0; q < lattice().Q; ++q)
+        to[number * q_count + q] = arriving(q, c[0] - first[0], c[1] - first[1], c[2] - first[2]);
+    });
+  };
+  record.set("populations",
+             CellValues{domain().cells(), lattice().Q, f_.precision() == Precision::Single,
+                        range_of(cells()), read});
   record.set("steps", steps_);
   record.set("odd", std::int64_t{stream_.odd()});
   for (std::size_t i = 0; i < patches_.size(); ++i)
@@ -83,19 +75,30 @@ void Fluid::load(const Record& record) {
     if (!fixed_.empty()) fixed_two_steps_.load(record.part("fixed_loads"));
     loads_are_new_ = false;
   }
-  const Cell3 n = cells().size, all = domain().cells();
-  const auto q_count = static_cast<std::size_t>(lattice().Q);
-  std::vector<double> populations;
-  if (ranks_->rank() == 0)
-    populations = record.list<double>("populations", q_count * all[0] * all[1] * all[2]);
-  populations = ranks_->scatter(std::move(populations), lattice().Q);
+  const CellValues& populations = record.cells("populations", domain().cells(), lattice().Q);
+  if (!populations.here.holds(range_of(cells())))
+    throw std::invalid_argument("'populations' are of cells of another rank");
   steps_ = record.integer("steps");
   move_shapes();
   stream_.set_odd(record.integer("odd") != 0);
   if (force_in_time_.changes_after(0) || flow_) set_body_force();
-  each_cell(n, [&](std::size_t number, int x, int y, int z) {
-    for (int q = 0; q < lattice().Q; ++q) arriving(q, x, y, z) = populations[number * q_count + q];
-  });
+  load_populations(populations);
+}
+
+/// In pieces: of single precision, all of them would take twice the room of the lattice.
+void Fluid::load_populations(const CellValues& populations) {
+  const auto q_count = static_cast<std::size_t>(lattice().Q);
+  const Cell3& first = cells().begin;
+  std::vector<double> values;
+  for (const CellRange& piece : pieces_of(range_of(cells()), q_count * sizeof(double))) {
+    values.resize(q_count * piece.count());
+    populations.read(piece, values);
+    piece.each([&](const Cell3& c, std::size_t number) {
+      for (int q = 0; q < lattice().Q; ++q)
+        arriving(q, c[0] - first[0], c[1] - first[1], c[2] - first[2]) =
+            values[number * q_count + q];
+    });
+  }
 }
 
 }  // namespace lbm

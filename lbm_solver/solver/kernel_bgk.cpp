@@ -7,8 +7,10 @@ namespace lbm {
 template <class L, class Viscosity, class Force>
 using Bgk = TwoRates<L, EqualRates, Viscosity, Force>;
 
+template <class L>
 KernelRows bgk_rows() {
-  return rows_of<Bgk>(CollisionOperator::Bgk);
+  return rows_of<Bgk, L>(CollisionOperator::Bgk);
 }
+template KernelRows bgk_rows<BPLBM_LATTICE>();
 
 }  // namespace lbm

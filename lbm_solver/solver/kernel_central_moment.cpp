@@ -4,8 +4,10 @@
 
 namespace lbm {
 
+template <class L>
 KernelRows central_moment_rows() {
-  return rows_of<CentralMoments>(CollisionOperator::CentralMoment);
+  return rows_of<CentralMoments, L>(CollisionOperator::CentralMoment);
 }
+template KernelRows central_moment_rows<BPLBM_LATTICE>();
 
 }  // namespace lbm

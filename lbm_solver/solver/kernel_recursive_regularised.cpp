@@ -6,13 +6,12 @@ namespace lbm {
 
 /// In double precision only: it is the slowest to compile, and central moments serve the same
 /// flows.
+template <class L>
 KernelRows recursive_regularised_rows() {
-  constexpr CollisionOperator collision = CollisionOperator::RecursiveRegularised;
   KernelRows rows;
-  add_lattice<RecursiveRegularised, D2Q9, double>(rows, collision);
-  add_lattice<RecursiveRegularised, D3Q19, double>(rows, collision);
-  add_lattice<RecursiveRegularised, D3Q27, double>(rows, collision);
+  add_precision<RecursiveRegularised, L, double>(rows, CollisionOperator::RecursiveRegularised);
   return rows;
 }
+template KernelRows recursive_regularised_rows<BPLBM_LATTICE>();
 
 }  // namespace lbm

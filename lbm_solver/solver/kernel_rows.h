@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// How a source file kernel_*.cpp lists the kernels that it compiles.
+/// How a source file kernel_*.cpp lists the kernels that it compiles: those of one operator on the
+/// lattice BPLBM_LATTICE, once for each lattice of lbm_solver/CMakeLists.txt. So they compile side
+/// by side, and a first run in the plane need not wait for those in space.
 #pragma once
 
 #include "lbm_solver/collision/forcing.h"
@@ -18,10 +20,13 @@ struct KernelTableRow {
 };
 using KernelRows = std::vector<KernelTableRow>;
 
-// One operator a file, so that they compile side by side.
+template <class L>
 KernelRows bgk_rows();
+template <class L>
 KernelRows trt_rows();
+template <class L>
 KernelRows central_moment_rows();
+template <class L>
 KernelRows recursive_regularised_rows();
 
 template <class Collision, class Real>
@@ -39,25 +44,22 @@ void add_row(KernelRows& rows, CollisionOperator collision) {
                   .make = make_row_kernel<Collision, Real>});
 }
 
-/// All rows of one lattice and precision: every law of viscosity that is not constant shares one.
+/// All rows of one lattice and precision of an operator that is a template on lattice, viscosity
+/// and force: every law of viscosity that is not constant shares one.
 template <template <class, class, class> class Collision, class L, class Real>
-void add_lattice(KernelRows& rows, CollisionOperator collision) {
+void add_precision(KernelRows& rows, CollisionOperator collision) {
   add_row<Collision<L, ConstantViscosity, NoForce<L>>, Real>(rows, collision);
   add_row<Collision<L, ConstantViscosity, GuoForce<L>>, Real>(rows, collision);
   add_row<Collision<L, LocalViscosity, NoForce<L>>, Real>(rows, collision);
   add_row<Collision<L, LocalViscosity, GuoForce<L>>, Real>(rows, collision);
 }
 
-/// All rows of an operator that is a template on lattice, viscosity and force.
-template <template <class, class, class> class Collision>
+/// All rows of one lattice.
+template <template <class, class, class> class Collision, class L>
 KernelRows rows_of(CollisionOperator collision) {
   KernelRows rows;
-  add_lattice<Collision, D2Q9, double>(rows, collision);
-  add_lattice<Collision, D2Q9, float>(rows, collision);
-  add_lattice<Collision, D3Q19, double>(rows, collision);
-  add_lattice<Collision, D3Q19, float>(rows, collision);
-  add_lattice<Collision, D3Q27, double>(rows, collision);
-  add_lattice<Collision, D3Q27, float>(rows, collision);
+  add_precision<Collision, L, double>(rows, collision);
+  add_precision<Collision, L, float>(rows, collision);
   return rows;
 }
 

@@ -3,19 +3,28 @@
 
 #include <stdexcept>
 
+#include "lbm_solver/base/errors.h"
 #include "lbm_solver/solver/kernel_rows.h"
 
 namespace lbm {
 namespace {
 
+template <class... Lattice>
+KernelRows all_rows() {
+  KernelRows rows;
+  const auto add = [&](const KernelRows& part) {
+    rows.insert(rows.end(), part.begin(), part.end());
+  };
+  (add(bgk_rows<Lattice>()), ...);
+  (add(trt_rows<Lattice>()), ...);
+  (add(central_moment_rows<Lattice>()), ...);
+  (add(recursive_regularised_rows<Lattice>()), ...);
+  return rows;
+}
+
+/// Of the lattices that this program is built with (lbm_solver/CMakeLists.txt).
 const KernelRows& table() {
-  static const KernelRows all = [] {
-    KernelRows rows;
-    for (const auto& part :
-         {bgk_rows(), trt_rows(), central_moment_rows(), recursive_regularised_rows()})
-      rows.insert(rows.end(), part.begin(), part.end());
-    return rows;
-  }();
+  static const KernelRows all = all_rows<BPLBM_LATTICES>();
   return all;
 }
 
@@ -40,8 +49,14 @@ std::unique_ptr<Kernel> make_kernel(const KernelChoice& c) {
                               .local_viscosity = c.local_viscosity(),
                               .force = c.force,
                               .make = nullptr};
-  for (const KernelTableRow& row : table())
+  bool lattice_is_there = false;
+  for (const KernelTableRow& row : table()) {
     if (same(row, wanted)) return row.make(c);
+    lattice_is_there |= row.lattice == wanted.lattice;
+  }
+  if (!lattice_is_there)
+    throw InputError("this program was built without the lattice " + wanted.lattice,
+                     "take lbm, which has all of them; tools/build makes it");
   std::string known;
   for (const KernelTableRow& row : table()) known += "\n  " + text(row);
   throw std::invalid_argument(fmt::format("no kernel for {}; known:{}", text(wanted), known));

@@ -7,8 +7,10 @@ namespace lbm {
 template <class L, class Viscosity, class Force>
 using Trt = TwoRates<L, MagicRate, Viscosity, Force>;
 
+template <class L>
 KernelRows trt_rows() {
-  return rows_of<Trt>(CollisionOperator::Trt);
+  return rows_of<Trt, L>(CollisionOperator::Trt);
 }
+template KernelRows trt_rows<BPLBM_LATTICE>();
 
 }  // namespace lbm

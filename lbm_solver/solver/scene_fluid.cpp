@@ -146,10 +146,13 @@ VoxelSolid solid_of(const Scene& s, const Plan& p, const ImageScene& image) {
   VoxelSolid solid;
   solid.voxels = image.voxels;
   const double wide = image.voxel / p.units.dx, times = std::max(wide, 1.0 / wide);
-  if (std::abs(times - std::round(times)) > 1e-6 * times)
+  constexpr double most = 10000.0;  // of one in the other; boxes are no wider
+  if (!(times <= most) || std::abs(times - std::round(times)) > 1e-6 * times)
     throw InputError(
         fmt::format("{}: obstacle.voxel = {:.6g} m is {:.6g} cells", s.file, image.voxel, wide),
-        "take a cell that is a whole number of voxels, or a voxel of whole cells");
+        fmt::format("take a cell that is a whole number of voxels, or a voxel of whole cells, {} "
+                    "at most",
+                    most));
   (wide > 1.0 ? solid.finer : solid.coarser) = static_cast<int>(std::lround(times));
   for (int k = 0; k < s.box.dimension; ++k) {
     const int voxels = image.voxels->size[k];

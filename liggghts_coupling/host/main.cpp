@@ -26,6 +26,7 @@
 #include "liggghts_coupling/host/screen_ear.h"
 #include "liggghts_coupling/host/script_names.h"
 #include "protocol/program/input_file.h"
+#include "protocol/program/mpi_start.h"
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 
@@ -217,7 +218,10 @@ void run(Arguments& arguments) {
 
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // LIGGGHTS aborts without flushing
-  MPI_Init(&argc, &argv);
+  {
+    const protocol::MpiStart bounded("liggghts");
+    MPI_Init(&argc, &argv);
+  }
   dem::Arguments arguments(argv, argv + argc);
   dem::Coupling& coupling = dem::Coupling::instance();
   int code = protocol::kOk;

@@ -130,9 +130,12 @@ class End {
       const std::vector<int> lost = without_progress(ending.missing, before, now);
       if (!lost.empty()) {
         const std::string silent = silent_ranks();
-        give_up(!silent.empty() ? silent
-                                : format("{} did not end within {:.3g} s, and did nothing",
-                                         list_of(lost), limit()));
+        give_up(
+            !silent.empty()
+                ? silent
+                : format("{} did not end within {:.3g} s, and did nothing; its program must say "
+                         "farewell, by bplbm_close for one",
+                         list_of(lost), limit()));
       }
       before = now;
     }

@@ -15,9 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "protocol/program/mpi_start.h"
 #include "protocol/program/program.h"
 #include "protocol/program/solid_parts.h"
 #include "protocol/program/watch.h"
+#include "protocol/solid/setup.h"
 #include "protocol/transport/mpi_channel.h"
 #include "protocol/wire/numbers.h"
 #include "protocol/wire/session.h"
@@ -44,6 +46,8 @@ struct bplbm_solid {
   Hello hello;  // what was agreed
   StepHeader head;
   bool agreed = false, stop_asked = false, checkpoint_written = false;
+  bool underway = false;  // states are sent, their loads have not come
+  bool left = false;      // it said goodbye
 
   void note(const std::exception& what) {
     failure = std::current_exception();
@@ -98,62 +102,11 @@ void count_handle(const std::string& program) {
   if (registered == 0 && open_handles++ == 0) first_program = program;
 }
 
-bplbm_setup setup_of(const Hello& fluid) {
-  bplbm_setup setup{};
-  setup.dimension = static_cast<std::int32_t>(fluid.dimension);
-  std::copy(fluid.periodic.begin(), fluid.periodic.end(), setup.periodic);
-  std::copy(fluid.box_lo.begin(), fluid.box_lo.end(), setup.box_low);
-  std::copy(fluid.box_hi.begin(), fluid.box_hi.end(), setup.box_high);
-  std::copy(fluid.gravity.begin(), fluid.gravity.end(), setup.gravity);
-  setup.depth = fluid.depth;
-  setup.buoyancy = static_cast<std::int32_t>(fluid.buoyancy);
-  setup.schedule = static_cast<std::int32_t>(fluid.schedule);
-  setup.step = fluid.step * fluid.fluid_steps / fluid.solid_steps;
-  setup.steps = static_cast<std::int32_t>(fluid.solid_steps);
-  setup.checkpoints = fluid.features & kCheckpoints ? 1 : 0;
-  setup.first_interval = fluid.first_interval;
-  setup.particles = fluid.particles.value_or(-1);
-  const auto range = [](const std::optional<Range>& from, double* to) {
-    if (from) to[0] = from->lo, to[1] = from->hi;
-  };
-  range(fluid.radius, setup.radius);
-  range(fluid.density, setup.density);
-  for (std::size_t side = 0; side < 6; ++side)
-    setup.sides[side] = fluid.sides ? static_cast<std::int32_t>((*fluid.sides)[side]) : -1;
-  return setup;
-}
-
-Hello hello_of(const bplbm_setup& setup, const bplbm_solid& solid) {
-  Hello hello;
-  hello.role = Role::Solid;
-  hello.program = solid.program;
-  hello.program_version = solid.version;
-  hello.dimension = static_cast<std::uint32_t>(setup.dimension);
-  for (std::size_t k = 0; k < 3; ++k) hello.periodic[k] = setup.periodic[k] != 0;
-  std::copy_n(setup.box_low, 3, hello.box_lo.begin());
-  std::copy_n(setup.box_high, 3, hello.box_hi.begin());
-  std::copy_n(setup.gravity, 3, hello.gravity.begin());
-  hello.depth = setup.depth;
-  hello.buoyancy = static_cast<Buoyancy>(setup.buoyancy);
-  hello.schedule = static_cast<Schedule>(setup.schedule);
-  hello.step = setup.step;
-  hello.solid_steps = static_cast<std::uint32_t>(setup.steps);
-  if (setup.checkpoints) hello.features = kCheckpoints;
-  hello.first_interval = setup.first_interval;
-  if (setup.particles >= 0) hello.particles = setup.particles;
-  if (setup.radius[1] > 0.0) hello.radius = {setup.radius[0], setup.radius[1]};
-  if (setup.density[1] > 0.0) hello.density = {setup.density[0], setup.density[1]};
-  if (std::all_of(setup.sides, setup.sides + 6, [](std::int32_t side) { return side >= 0; })) {
-    hello.sides.emplace();
-    for (std::size_t side = 0; side < 6; ++side)
-      (*hello.sides)[side] = static_cast<SideWall>(setup.sides[side]);
-  }
-  return hello;
-}
-
 void send(bplbm_solid& solid, std::int64_t n, const bplbm_state* states,
           const bplbm_shape* shapes) {
   expect(solid.agreed, "bplbm_exchange: call bplbm_agree first");
+  expect(!solid.left, "bplbm_exchange: bplbm_goodbye was called; call bplbm_close next");
+  expect(!solid.underway, "bplbm_send: these states are sent; call bplbm_receive for their loads");
   expect(!(solid.head.flags & kLast), "bplbm_exchange: the last states have been sent");
   expect(n >= 0 && (n == 0 || (states && shapes)),
          "bplbm_exchange: give a state and a shape for each of n >= 0 particles");
@@ -165,15 +118,19 @@ void send(bplbm_solid& solid, std::int64_t n, const bplbm_state* states,
                          kBadInput);
   StepHeader& head = solid.head;
   head.time = static_cast<double>(head.interval) * solid.hello.step * solid.hello.solid_steps;
-  head.flags = (solid.stop_asked ? kLast : 0U) | (solid.checkpoint_written ? kCheckpoint : 0U);
+  head.flags = (solid.stop_asked ? kLast : 0U) | (solid.checkpoint_written ? kCheckpoint : 0U) |
+               (signalled() ? kStopWished : 0U);
   const auto count = static_cast<std::size_t>(n);
   solid.session->send(head, {reinterpret_cast<const State*>(states), count},
                       {reinterpret_cast<const Shape*>(shapes), count}, solid.report);
   solid.report.reset();
   solid.checkpoint_written = false;
+  solid.underway = true;
 }
 
 void receive(bplbm_solid& solid, bplbm_load* loads, std::uint32_t* asked) {
+  expect(solid.underway, "bplbm_receive: no states are sent; call bplbm_send first");
+  solid.underway = false;
   if (solid.head.flags & kLast) {
     if (asked) *asked = BPLBM_LAST;
     return;
@@ -256,9 +213,14 @@ int bplbm_connect(bplbm_solid** solid, const char* program, const char* version)
     s.program = program ? program : "solid";
     s.version = version ? version : "";
     count_handle(s.program);
+    expect(open_handles == 1,
+           "bplbm_connect: this process is connected already; call bplbm_close with that handle");
     int initialised = 0;
     MPI_Initialized(&initialised);
-    if (!initialised) MPI_Init(nullptr, nullptr);
+    if (!initialised) {
+      const MpiStart bounded(s.program);
+      MPI_Init(nullptr, nullptr);
+    }
     catch_free_signals();
     s.world = connect(Role::Solid);
     if (!s.world.coupled())
@@ -278,7 +240,10 @@ const char* bplbm_error(const bplbm_solid* solid) {
 }
 
 int bplbm_scene(bplbm_solid* solid, bplbm_setup* setup) {
-  return guarded(solid, [&] { *setup = setup_of(solid->session->fluid()); });
+  return guarded(solid, [&] {
+    expect(setup != nullptr, "bplbm_scene: give a setup");
+    *setup = setup_of(solid->session->fluid());
+  });
 }
 
 const char* bplbm_variable(const bplbm_solid* solid, const char* name) {
@@ -288,6 +253,7 @@ const char* bplbm_variable(const bplbm_solid* solid, const char* name) {
 
 int bplbm_number(bplbm_solid* solid, const char* name, double* value) {
   return guarded(solid, [&] {
+    expect(name && value, "bplbm_number: give a name and a place for the number");
     const Variable* found = find(solid, name);
     if (!found)
       throw ProgramError(format("the fluid offers no variable '{}'; add it to "
@@ -307,7 +273,10 @@ int bplbm_number(bplbm_solid* solid, const char* name, double* value) {
 int bplbm_agree(bplbm_solid* solid, const bplbm_setup* setup) {
   return guarded(solid, [&] {
     expect(setup != nullptr, "bplbm_agree: give a setup");
-    solid->hello = hello_of(*setup, *solid);
+    expect(!solid->agreed, "bplbm_agree: both have agreed already; call it once");
+    solid->hello = hello_of(*setup);
+    solid->hello.program = solid->program;
+    solid->hello.program_version = solid->version;
     solid->head.interval = solid->hello.first_interval;
     solid->session->agree(solid->hello);
     solid->agreed = true;
@@ -351,12 +320,18 @@ int bplbm_report(bplbm_solid* solid, int64_t left, const int64_t counts[5], int6
 }
 
 int bplbm_goodbye(bplbm_solid* solid, const char* reason) {
-  return guarded(solid, [&] { solid->session->goodbye(reason ? reason : ""); });
+  return guarded(solid, [&] {
+    expect(solid->agreed, "bplbm_goodbye: call bplbm_agree first");
+    expect(!solid->left, "bplbm_goodbye: it was said; call bplbm_close next");
+    solid->session->goodbye(reason ? reason : "");
+    solid->left = true;
+  });
 }
 
 int bplbm_fail(bplbm_solid* solid, int code, const char* reason) {
   return guarded(solid, [&] {
-    throw ProgramError(reason ? reason : "it does not say why", code == kOk ? kFault : code);
+    throw ProgramError(reason ? reason : "it does not say why",
+                       code < 1 || code > 255 ? int{kFault} : code);
   });
 }
 

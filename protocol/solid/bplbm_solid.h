@@ -167,8 +167,8 @@ int bplbm_report(bplbm_solid* solid, int64_t left, const int64_t counts[5], int6
  * bplbm_close next. (Without a goodbye the fluid ends with exit code 1, naming this program.) */
 int bplbm_goodbye(bplbm_solid* solid, const char* reason);
 
-/* Says that this program cannot go on, and why; the fluid prints it. Returns `code`, which must be
- * another than BPLBM_OK. Call bplbm_close next. */
+/* Says that this program cannot go on, and why; the fluid prints it. Returns `code`, from 1 to
+ * 255; any other counts as BPLBM_FAULT. Call bplbm_close next. */
 int bplbm_fail(bplbm_solid* solid, int code, const char* reason);
 
 /* The ranks of this program. MPI_COMM_WORLD contains those of the fluid as well: never use it for a

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "protocol/program/program.h"
 #include "protocol/wire/clumps.h"
 
 namespace protocol {
@@ -135,6 +136,7 @@ void ParticleCoupling::send_states(std::uint32_t flags) {
   gather(engine_.particles());
   const double interval = now.step * substeps_;
   if (stop_asked_) flags |= kLast;
+  if (signalled()) flags |= kStopWished;
   session_.set(now);
   session_.send({interval_, static_cast<double>(interval_) * interval, flags}, states_, shapes_,
                 engine_.report());

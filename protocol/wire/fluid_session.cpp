@@ -157,6 +157,7 @@ void FluidSession::check_states(std::span<const Particle> before,
 
 void FluidSession::merge(const std::vector<StateBatch>& batches) {
   arrival_.head = batches.front().head;
+  for (const StateBatch& batch : batches) arrival_.head.flags |= batch.head.flags & kStopWished;
   arrival_.goodbye.reset();
   merge_reports(batches);
   if (merge_as_before(batches)) return;

@@ -85,6 +85,7 @@ enum StepFlags : std::uint32_t {
   /// loads only: before the next states set yourself up as a restart from a checkpoint there would,
   /// whether or not one is written: a run that is stopped there goes on to the bit
   kSettle = 16,
+  kStopWished = 32,  ///< states only: the sender was told to end; the fluid ends as if it had been
 };
 
 struct StepHeader {

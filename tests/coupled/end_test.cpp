@@ -7,6 +7,7 @@
 #include <fstream>
 #include <future>
 #include <regex>
+#include <tuple>
 
 #include "tests/support/coupled_job.h"
 
@@ -117,6 +118,33 @@ INSTANTIATE_TEST_SUITE_P(All, LeavingSolid,
                                          Leaving{"PythonByExit", kPython, "exit"},
                                          Leaving{"PythonWithFarewell", kPython, "farewell"}),
                          [](const auto& info) { return info.param.name; });
+
+// No crash, no wait for the time-out: the library says which call was wrong.
+TEST(MisuseInC, IsNamedAtOnce) {
+  const std::tuple<const char*, int, const char*> calls[] = {
+      {"scene", 2, "bplbm_scene: give a setup"},
+      {"number", 2, "bplbm_number: give a name and a place"},
+      {"place", 2, "bplbm_number: give a name and a place"},
+      {"agree", 2, "bplbm_agree: both have agreed already"},
+      {"receive", 2, "bplbm_receive: no states are sent; call bplbm_send first"},
+      {"send", 2, "bplbm_send: these states are sent; call bplbm_receive"},
+      {"goodbye", 2, "bplbm_exchange: bplbm_goodbye was called"},
+      {"code", 1, "has had enough"},
+      {"connect", 2, "bplbm_connect: this process is connected already"},
+  };
+  std::vector<std::future<JobResult>> jobs;
+  for (const auto& [call, code, said] : calls)
+    jobs.push_back(std::async(std::launch::async, [call = call] {
+      const Scene scene;
+      return test::run(scene.job(kC + "misuse " + call), scene.folder(), 30.0);
+    }));
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    const auto& [call, code, said] = calls[k];
+    SCOPED_TRACE(call);
+    expect_end(jobs[k].get(), code,
+               {std::string("leaving_solid | error | ") + (code == 2 ? said : ""), said});
+  }
+}
 
 // A Python engine that leaves its `with` block, without a word, says goodbye.
 TEST(PythonBlock, SaysGoodbyeWhenItIsLeft) {

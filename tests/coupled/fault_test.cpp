@@ -262,14 +262,31 @@ TEST(FullDisk, EndsBothWithTheReason) {
   expect_end(job, 1, {"is the disk full?", "liggghts | error | the fluid program stopped"});
 }
 
-/// Runs a job that would last for hours and kills one of its programs after two seconds.
-JobResult run_and_kill(const std::string& program) {
+/// Runs a job that would last for hours and sends a signal to one of its programs after two
+/// seconds.
+JobResult run_and_kill(const std::string& program, const std::string& signal = "KILL",
+                       const std::string& solid = kLiggghts + " -screen none") {
   SettlingDisc scene;
   scene.change_scene("end_time = 0.04", "end_time = 1000.0");
-  const std::string job = mpirun({kLbm + " --progress none"}, {kLiggghts + " -screen none"});
-  return test::run(
-      "(" + job + ") & job=$!; sleep 2; pkill -KILL -x -P $job " + program + "; wait $job",
-      scene.folder(), 30.0);
+  const std::string job = mpirun({kLbm + " --progress none"}, {solid});
+  return test::run("(" + job + ") & job=$!; sleep 2; pkill -" + signal + " -x -P $job " + program +
+                       "; wait $job",
+                   scene.folder(), 30.0);
+}
+
+// It tells the fluid with its states, whatever the engine.
+TEST(Stopped, ASignalToTheSolidAloneEndsBothInGoodOrder) {
+  for (const auto& [program, solid] :
+       {std::pair{"liggghts", kLiggghts + " -screen none"},
+        std::pair{"reference_engin", test::kBin + "/reference_engine"},
+        std::pair{"c_engine", test::kBin + "/c_engine"},
+        std::pair{"python3", std::string("/usr/bin/python3 " BPLBM_SOURCE_DIR
+                                         "/tools/engines/python/engine.py")}}) {
+    SCOPED_TRACE(program);
+    const JobResult job = run_and_kill(program, "TERM", solid);
+    expect_end(job, job.exit_code, {"ending       stopped by a signal"});
+    EXPECT_LE(job.exit_code, 1) << job.output;
+  }
 }
 
 TEST(Lost, KilledFluid) {

@@ -37,6 +37,17 @@ TEST(Launch, TheFluidTwice) {
              {"no solid program was started beside lbm"});
 }
 
+// MPI_Init waits for every program of the job, also for those that never come.
+TEST(Launch, AProgramThatEndsBeforeItsMpiInit) {
+  SettlingDisc scene;
+  const std::string hurry = "export BPLBM_CONNECT_TIMEOUT=3; ";
+  expect_end(test::run(hurry + mpirun({kLbm}, {"sleep 40"}), scene.folder(), 30.0), 1,
+             {"lbm | error | MPI has not begun within 3 s: another program of this mpirun"});
+  expect_end(test::run(hurry + mpirun({"sleep 40"}, {kLiggghts + " -in in.liggghts"}),
+                       scene.folder(), 30.0),
+             1, {"liggghts | error | MPI has not begun within 3 s"});
+}
+
 TEST(Launch, TheSolidTwice) {
   SettlingDisc scene;
   const auto line = test::run(kLbm + " check --liggghts-vars", scene.folder(), 20.0);

@@ -154,6 +154,51 @@ TEST(ManyFluidRanks, AloneWithFieldsAndPoints) {
   EXPECT_EQ(same.exit_code, 0) << same.output;
 }
 
+// Of a field and a checkpoint rank 0 has a piece at a time. All cells of the checkpoint would be
+// 319 MB more, those of its own block 80 MB, and its share of the lattice is 40 MB.
+TEST(ManyFluidRanks, TheFirstNeedsNoMoreMemoryThanOthers) {
+  const test::TemporaryFolder folder;
+  folder.write("scene.toml", R"(
+[box]
+size = [1.28, 1.28, 1.28]
+[fluid]
+density = 1000.0
+kinematic_viscosity = 0.01
+velocity_scale = 0.1
+[[boundary]]
+side = "top"
+kind = "moving_wall"
+velocity = [0.1, 0.0, 0.0]
+[numerics]
+cell = 0.01
+precision = "single"
+[run]
+end_time = 0.04
+checkpoint_every = 0.02
+[output]
+fields_every = 0.02
+)");
+  const auto start = [&](const std::string& options) {
+    const JobResult result = test::run(
+        "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+        "OMPI_MCA_mpi_yield_when_idle=1 mpirun --bind-to none --oversubscribe -np 4 " +
+            test::kLbm + " scene.toml --progress none --out out " + options,
+        folder.path(), 60.0);
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+    const std::string summary = test::read_file(folder.path() + "/out/summary.json");
+    const auto number = [&](const std::string& key) {
+      const std::size_t at = summary.find("\"" + key + "\":");
+      return at == std::string::npos ? 0.0 : std::strtod(&summary[at + key.size() + 3], nullptr);
+    };
+    EXPECT_GT(number("first_rank"), 40.0) << summary;
+    EXPECT_LT(number("first_rank"), 1.2 * number("all") / 4.0) << summary;
+    EXPECT_GT(number("checkpoints"), 0.0) << summary;
+    EXPECT_GT(number("fields"), 0.0) << summary;
+  };
+  start("--until 0.03");
+  start("--restart");
+}
+
 TEST(ManyFluidRanks, AreRefusedWhereTheyCannotWork) {
   const test::TemporaryFolder folder;
   const std::string cases = BPLBM_SOURCE_DIR "/cases/";

@@ -172,7 +172,7 @@ TEST(SpringScheme, RemembersItsStretchInACheckpoint) {
   };
   Fluid one = make(c, domain, CollisionOperator::Trt, 0.8, {1e-6, 0.0});
   run(one, 50);
-  const auto state = one.save();
+  const auto state = one.save().kept();
   run(one, 50);
   Fluid two = make(c, domain, CollisionOperator::Trt, 0.8, {1e-6, 0.0});
   two.place(discs);

@@ -7,12 +7,17 @@
 
 #include <mpi.h>
 #include <omp.h>
-#include <bit>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 #include "lbm_solver/coupling/lubrication.h"
+#include "lbm_solver/coupling/shown_cells.h"
 #include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/io/checkpoint.h"
+#include "lbm_solver/io/field_writer.h"
 #include "lbm_solver/solver/fluid.h"
 #include "tests/support/meshes.h"
 
@@ -267,23 +272,29 @@ TEST(Ranks, MoveTheSameWallsAsOneAlone) {
     }
 }
 
-/// A record as every rank reads it from a file; it is complete on the first one.
-Record everywhere(Record record, const Decomposition& ranks) {
-  for (auto& [name, value] : record.values()) {
-    if (auto* list = std::get_if<std::vector<double>>(&value); list && name != "populations")
-      ranks.broadcast(*list);
-    if (auto* ids = std::get_if<std::vector<std::int64_t>>(&value)) {
-      std::vector<double> bits;
-      for (const std::int64_t id : *ids) bits.push_back(std::bit_cast<double>(id));
-      ranks.broadcast(bits);
-      ids->clear();
-      for (const double b : bits) ids->push_back(std::bit_cast<std::int64_t>(b));
-    }
+/// A name for a file or folder, the same on all ranks; removed by the first one.
+class SharedPath {
+ public:
+  SharedPath() {
+    int id = static_cast<int>(getpid());
+    MPI_Bcast(&id, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    path_ = std::filesystem::temp_directory_path() / ("bplbm_ranks_" + std::to_string(id));
+    if (rank_ == 0) std::filesystem::create_directories(path_);
+    MPI_Barrier(MPI_COMM_WORLD);
   }
-  Record all = record;
-  for (const auto& [name, part] : record.parts()) all.set(name, everywhere(part, ranks));
-  return all;
-}
+  ~SharedPath() {
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (rank_ == 0) std::filesystem::remove_all(path_);
+  }
+  SharedPath(const SharedPath&) = delete;
+  SharedPath& operator=(const SharedPath&) = delete;
+  std::string operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  int rank_ = 0;
+  std::filesystem::path path_;
+};
 
 TEST(Ranks, GoOnFromAStateOfAnotherGrid) {
   const Domain domain{23, 14, Side::Wall, Side::Periodic, 13, Side::Wall};
@@ -303,7 +314,11 @@ TEST(Ranks, GoOnFromAStateOfAnotherGrid) {
   randomise(whole);
   one.advance(7);  // an odd number: the state does not depend on the slots' parity
   whole.advance(7);
-  two.load(everywhere(one.save(), first));
+  const SharedPath folder;
+  const Record state = one.save();
+  write_checkpoint(folder / "state.h5", state, 7, {}, &first);
+  MPI_Barrier(MPI_COMM_WORLD);
+  two.load(read_checkpoint(folder / "state.h5"));
   for (int step = 0; step < 4; ++step) {  // the first load needs that of the step before
     two.step();
     whole.step();
@@ -313,6 +328,52 @@ TEST(Ranks, GoOnFromAStateOfAnotherGrid) {
   }
   expect_same_cells(two, whole, 1e-16);
   EXPECT_NEAR(two.mass_in(), whole.mass_in(), 1e-13);
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// Every bit of the files, where rows are whole: a box of several pieces a rank, single and double.
+TEST(Ranks, WriteTheFilesOfOneAlone) {
+  const Domain domain{64, 48, Side::Wall, Side::Periodic, 40, Side::Wall};
+  const SharedPath folder;
+  Plan plan;
+  plan.units = {0.01, 0.1, 1000.0, 1.0, {0.0, 0.0, 0.0}};
+  for (const Precision precision : {Precision::Double, Precision::Single})
+    for (const Cell3& grid : grids(domain)) {
+      if (grid[0] > 1) continue;
+      const Decomposition ranks(domain, MPI_COMM_WORLD, grid), alone(domain);
+      const auto write = [&](const Decomposition& d, const std::string& name) {
+        Fluid fluid(d, choice_for("D3Q19", precision));
+        fluid.add_wall({3, 0, 0}, {9, 4, domain.nz});
+        randomise(fluid);
+        fluid.place(bodies_in(domain));
+        fluid.advance(3);
+        Record record;
+        record.set("populations", fluid.save().cells().at("populations"));
+        write_checkpoint(folder / (name + ".h5"), record, 3, {}, &d);
+        const CellFields cells = shown_cells(fluid, plan, false);
+        const Vec3 flux = mean_arrived_momentum(fluid);
+        if (d.rank() != 0) return write_fields(-1, cells, 3, d);
+        std::filesystem::create_directories(folder / name);
+        FieldWriter fields(folder / name, plan.units, 3);
+        FieldFrame frame;
+        frame.cells = cells;
+        frame.flux = flux;
+        fields.write(frame, d);
+      };
+      write(ranks, "many");
+      if (ranks.rank() != 0) continue;
+      write(alone, "one");
+      for (const char* name : {"one.h5", "one/fields.h5", "one/fields.xdmf"}) {
+        const std::string one = bytes_of(folder / name);
+        const std::string many = bytes_of(folder / ("many" + std::string(name).substr(3)));
+        EXPECT_FALSE(one.empty()) << name;
+        EXPECT_TRUE(one == many) << name << " of " << grid[0] << grid[1] << grid[2];
+      }
+    }
 }
 
 // The mean velocity is added up in whole numbers, so that every grid finds the same force.

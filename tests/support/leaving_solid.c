@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* leaving_solid STAGE HOW: a solid in C that leaves at a stage (connected, agreed, states, running, last,
- * goodbye, refused) by MPI_Finalize only (finalize), by exit, with bplbm_close (farewell), or after bplbm_fail (fail).
- * leaving_solid slow SECONDS: one whose rank r looks for the fluid only r times as long after MPI_Init, and stays. */
+/* leaving_solid STAGE HOW: a solid in C that leaves at a stage (connected, agreed, states, running,
+ * last, goodbye, refused) by MPI_Finalize only (finalize), by exit, with bplbm_close (farewell), or
+ * after bplbm_fail (fail). leaving_solid misuse CALL: one wrong call once both agree. leaving_solid
+ * slow SECONDS: one whose rank r looks for the fluid only r times as long after MPI_Init, and
+ * stays. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +24,31 @@ static void leave_at(const char* here) {
   }
   if (!strcmp(how, "fail")) bplbm_fail(wire, 42, "has had enough");
   exit(bplbm_close(wire));
+}
+
+/* Makes one call that the library must refuse. */
+static void misuse(const bplbm_setup* setup, const bplbm_state* state, const bplbm_shape* shape) {
+  bplbm_solid* second = NULL;
+  bplbm_load load;
+  double number = 0.0;
+  if (!strcmp(how, "scene")) bplbm_scene(wire, NULL);
+  if (!strcmp(how, "number")) bplbm_number(wire, NULL, &number);
+  if (!strcmp(how, "place")) bplbm_number(wire, "depth", NULL);
+  if (!strcmp(how, "agree")) bplbm_agree(wire, setup);
+  if (!strcmp(how, "receive")) bplbm_receive(wire, &load, NULL);
+  if (!strcmp(how, "send")) {
+    bplbm_send(wire, 1, state, shape);
+    bplbm_send(wire, 1, state, shape);
+  }
+  if (!strcmp(how, "goodbye")) {
+    bplbm_goodbye(wire, "has seen enough");
+    bplbm_exchange(wire, 1, state, shape, &load, NULL);
+  }
+  if (!strcmp(how, "code")) bplbm_fail(wire, 300, "has had enough");
+  if (!strcmp(how, "connect")) {
+    bplbm_connect(&second, "second", "test");
+    bplbm_fail(wire, BPLBM_BAD_INPUT, bplbm_error(second));
+  }
 }
 
 int main(int argc, char** argv) {
@@ -50,6 +77,10 @@ int main(int argc, char** argv) {
   bplbm_agree(wire, &setup);
   leave_at("refused");
   leave_at("agreed");
+  if (!strcmp(stage, "misuse")) {
+    misuse(&setup, &state, &shape);
+    return bplbm_close(wire);
+  }
   for (int k = 0;; ++k) {
     if (k == 3) leave_at("running");
     if (k == 3 && !strcmp(stage, "goodbye")) {

@@ -5,7 +5,7 @@ import os
 import sys
 
 from bplbm.options import scene_files
-from bplbm.project import BIN, CASES, ROOT
+from bplbm.project import BIN, CASES, ROOT, fluid_program
 
 MODULES = {
     "new": ("bplbm.new_scene", "makes the folder of a new scene from a template"),
@@ -46,7 +46,7 @@ def check(words):
         fail("which scene? bplbm run --list shows them")
     if args.scene.is_solid_alone:
         fail(f"{args.scene.name} has no fluid: there is nothing that lbm could check")
-    os.execv(BIN / "lbm", [str(BIN / "lbm"), "check", *scene_files(args)])
+    os.execv(fluid_program(), [str(fluid_program()), "check", *scene_files(args)])
 
 
 def where():
@@ -61,7 +61,7 @@ def main():
         return 0 if len(sys.argv) > 1 else 2
     name, words = sys.argv[1], sys.argv[2:]
     if name == "--version":
-        os.execv(BIN / "lbm", ["lbm", "--version"])
+        os.execv(fluid_program(), ["lbm", "--version"])
     if name in PROGRAMS:
         os.execv(BIN / name, [name, *words])
     if name == "check":

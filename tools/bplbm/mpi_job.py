@@ -13,12 +13,12 @@ MOST_LINES = 400  # of what a job says on its error output that are kept
 STOPPED = 1  # a job that was told to end: its programs leave with this code
 
 
-def environment(processes):
-    """What Open MPI needs: permission to run as root, and polite waits on a full machine."""
+def environment(shared):
+    """What Open MPI needs: permission to run as root and, for processes that share cores, polite waits."""
     env = dict(os.environ)
     if os.geteuid() == 0:
         env.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    if processes > (os.cpu_count() or 1):
+    if shared:
         env["OMPI_MCA_mpi_yield_when_idle"] = "1"
     return env
 
@@ -35,7 +35,7 @@ def fluid_ranks(mpirun):
     for task in pathlib.Path(f"/proc/{mpirun}/task").glob("*/children"):
         for child in task.read_text().split():
             try:
-                if pathlib.Path(f"/proc/{child}/comm").read_text().strip() == "lbm":
+                if pathlib.Path(f"/proc/{child}/comm").read_text().strip() in ("lbm", "lbm_2d"):
                     found.append(int(child))
             except OSError:  # it has just ended
                 pass

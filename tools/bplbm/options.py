@@ -61,6 +61,8 @@ def parser():
     p.add_argument("--fluid-ranks", type=whole, default=1, metavar="N")
     p.add_argument("--solid-ranks", type=whole, default=1, metavar="M")
     p.add_argument("--threads", type=whole, default=1, metavar="T", help=f"of the fluid; at most {MOST_THREADS}")
+    p.add_argument("--no-bind", action="store_true", help="leave it to the system on which cores the processes run; else each "
+                   "has its own where there are enough")
     p.add_argument("--engine", choices=ENGINES, help="who moves the particles (default: liggghts); yade suits particles of one "
                    "size without a script, reference, python, c and fortran free discs")
     p.add_argument("--engine-command", metavar="'COMMAND'", help="any other program that does; in its words {folder} is the "

@@ -180,7 +180,7 @@ def relax(args, places, sizes):
         for _ in range(ROUNDS // 10):
             text = script(args, places, sizes) + f"run {10 * STEPS}\n"
             pathlib.Path(folder, "in.packing").write_text(text)
-            job = subprocess.run([BIN / "liggghts", "-in", "in.packing", "-screen", "none"], cwd=folder, env=environment(1),
+            job = subprocess.run([BIN / "liggghts", "-in", "in.packing", "-screen", "none"], cwd=folder, env=environment(shared=False),
                                  check=False, capture_output=True, text=True)
             if job.returncode:
                 fail(f"LIGGGHTS stopped:\n{job.stdout}{job.stderr}")

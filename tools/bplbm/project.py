@@ -11,6 +11,12 @@ CASES = ROOT / "cases"
 BIN = ROOT.parents[1] / "lib" / "bplbm" / "bin" if INSTALLED else ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
 
 
+def fluid_program():
+    """lbm, or lbm_2d where a first run in the plane has built no more than that."""
+    whole, plane = BIN / "lbm", BIN / "lbm_2d"
+    return plane if plane.exists() and not whole.exists() else whole
+
+
 def home():
     """The folder in which `out/` of the shipped scenes is made: an installed tree is never written to."""
     return pathlib.Path.cwd() if INSTALLED else ROOT

@@ -14,11 +14,11 @@ import subprocess
 import sys
 import time
 
-from bplbm import output_folder, solid_alone
+from bplbm import output_folder, placement, solid_alone
 from bplbm.logs import warning_lines
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
-from bplbm.project import BIN, INSTALLED, TOOLS, missing_cpu_features, tool
+from bplbm.project import BIN, INSTALLED, TOOLS, fluid_program, missing_cpu_features, tool
 
 OUT_OF_TOLERANCE = 4
 FAULT = 1
@@ -26,7 +26,7 @@ FAULT = 1
 
 def command(args, out):
     progress = "line" if sys.stdout.isatty() else "tenths"
-    fluid = [str(BIN / "lbm"), *scene_files(args)]
+    fluid = [str(fluid_program()), *scene_files(args)]
     fluid += ["--out", str(out), "--threads", str(args.threads), "--progress", progress]
     fluid += ["--set", args.set] + (["--variant", label(args)] if label(args) else [])
     fluid += ["--until", repr(args.until)] if args.until is not None else []
@@ -34,7 +34,7 @@ def command(args, out):
     fluid += ["--record", os.path.abspath(args.record)] if args.record else []
     fluid += [f"--restart={args.restart}"] if args.restart else []
     fluid += [word for key in args.accept for word in ("--accept", key)]
-    first = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), *fluid]
+    first = ["mpirun", *placement.UNBOUND, "-np", str(args.fluid_ranks), *fluid]
     solid = solid_command(args, out)
     return first + ([":", "-np", str(args.solid_ranks), *solid] if solid else [])
 
@@ -83,7 +83,8 @@ def run_alone(args, out):
     if args.force:
         output_folder.remove_run(out)
     script, begin = args.scene.script("liggghts"), time.monotonic()
-    code = start(solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks), args.solid_ranks, out)
+    line = solid_alone.command(BIN / "liggghts", script, out, found, args.solid_ranks)
+    code = start(line, placement.of_job(0, 0, args.solid_ranks, args.no_bind), out)
     if code == 0:
         solid_alone.write_summary(out, args.scene.name, args.set, label(args), found, time.monotonic() - begin)
         add_warnings(out)
@@ -98,20 +99,26 @@ def run_job(args, out):
     """The job in a folder of ours. Returns its exit code."""
     if args.scene.is_solid_alone:
         return run_alone(args, out)
-    code = start(command(args, out), args.fluid_ranks * args.threads + args.solid_ranks, out)
+    solids = args.solid_ranks if args.scene.is_coupled else 0
+    code = start(command(args, out), placement.of_job(args.fluid_ranks, args.threads, solids, args.no_bind), out)
     if code == 0:
         add_solid_waiting(out)
         add_warnings(out)
     return code
 
 
-def start(line, processes, out):
-    """Runs an mpirun line to its end; where it fails, error.log in the output folder is what it said. Returns its exit code."""
-    env = environment(processes)
+def start(line, place, out):
+    """Runs an mpirun line to its end, its processes on their cores; where it fails, error.log in the output folder is what
+    it said. Returns its exit code."""
+    env = environment(shared=not place.cores)
+    print(f"run | cores | {place.describe()}")
     added = " ".join(f"{k}={v}" for k, v in env.items() if os.environ.get(k) != v)
     print(f"run | {added + ' ' if added else ''}{shlex.join(line)}", flush=True)
-    job = MpiJob(line, env)
-    code = job.run()
+    job = MpiJob(place.bound(line), env)
+    try:
+        code = job.run()
+    finally:
+        place.release()
     log = out / "error.log"
     if code and out.is_dir():
         log.write_text("".join(job.said))
@@ -231,12 +238,25 @@ def study(args, runs, out):
     return 0
 
 
+def programs(args):
+    """What has to be built for a run. The kernels in space take most of the time: a run in the plane waits for them only
+    where they have been built before."""
+    needed = []
+    if not args.scene.is_solid_alone:
+        needed.append("lbm_2d" if args.scene.dimension == 2 and not (BIN / "lbm").exists() else "lbm")
+    if args.engine in ("lammps", "reference", "c", "fortran"):
+        needed.append(f"{args.engine}_engine")
+    elif args.engine == "liggghts" and not args.engine_command and (args.scene.is_coupled or args.scene.is_solid_alone):
+        needed.append("liggghts")
+    return needed
+
+
 def check_programs(args):
     """Refuses a run whose programs are not there, or were compiled for another processor."""
     if missing := missing_cpu_features():
         fail(f"these programs were compiled for a processor with {', '.join(missing)}, which this machine lacks; "
              "install a package for this processor, or build from the sources")
-    if (args.no_build or INSTALLED) and not (BIN / "lbm").exists():
+    if (args.no_build or INSTALLED) and not fluid_program().exists():
         what = "install the package again" if INSTALLED else "leave --no-build out, or run tools/build"
         fail(f"{BIN / 'lbm'} is missing: {what}")
     if args.no_build and args.engine == "liggghts" and not args.engine_command and args.scene.is_coupled \
@@ -259,6 +279,7 @@ def main():
     out = output_folder.resolved(args.out or out_folder(args))
     if args.look:
         take_folder(args, out, look=True)
+        print(*programs(args))
         return 0
     check_programs(args)
     others = comparison_runs(args)

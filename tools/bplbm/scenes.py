@@ -41,6 +41,14 @@ class Scene:
         except (OSError, ValueError):
             return False
 
+    @property
+    def dimension(self):
+        """2 or 3, or 0 where the file does not say: that is lbm's to complain of."""
+        try:
+            return len(self.tables()["box"]["size"])
+        except (OSError, ValueError, KeyError, TypeError):
+            return 0
+
     def script(self, engine):
         return self.folder / f"in.{engine}"
 

@@ -75,7 +75,16 @@ def draw_sides(axes, scene, box, unit):
 def draw_obstacle(axes, o, scene, folder, unit):
     up = len(scene["box"]["size"]) - 1
     flat = [0, up]
-    if "diameter" in o:
+    if "diameter" in o and "from" in o:  # a cylinder, as a strip; one that points at the reader as a disc
+        ends, radius = np.array([o["from"], o["to"]])[:, flat] / unit, o["diameter"] / 2 / unit
+        along = ends[1] - ends[0]
+        if not np.any(along):
+            axes.add_patch(plt.Circle(ends[0], radius, facecolor="0.6", edgecolor="0.3", alpha=0.8))
+        else:
+            across = radius * np.array([-along[1], along[0]]) / np.linalg.norm(along)
+            axes.add_patch(plt.Polygon([ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across],
+                                       facecolor="0.6", edgecolor="0.3", alpha=0.8))
+    elif "diameter" in o:
         ring = o.get("hollow", False)
         axes.add_patch(plt.Circle(np.array(o["centre"])[flat] / unit, o["diameter"] / 2 / unit, zorder=1 if ring else 2,
                                   facecolor="none" if ring else "0.6", edgecolor="0.3"))

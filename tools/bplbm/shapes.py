@@ -30,14 +30,15 @@ def placed_mesh(obstacle, folder):
 
 
 def extent(obstacle, folder):
-    """Lower and upper corner of what bounds a disc, sphere, block or mesh [m]."""
+    """Lower and upper corner of what bounds a disc, sphere, block or mesh, and of a cylinder's axis [m]."""
     if "mesh" in obstacle:
         corners = placed_mesh(obstacle, folder).reshape(-1, 3)
         return corners.min(0), corners.max(0)
-    if "diameter" in obstacle:
+    if "centre" in obstacle:
         centre = np.array(obstacle["centre"], dtype=float)
         return centre - 0.5 * obstacle["diameter"], centre + 0.5 * obstacle["diameter"]
-    return np.array(obstacle["from"], dtype=float), np.array(obstacle["to"], dtype=float)
+    ends = np.array([obstacle["from"], obstacle["to"]], dtype=float)
+    return ends.min(0), ends.max(0)
 
 
 def facing(corners):

@@ -10,6 +10,8 @@ import pathlib
 import re
 import tomllib
 
+from bplbm.placement import UNBOUND
+
 KEYS = {"box": {"size"}, "particles": {"diameter", "density", "contact_stiffness", "variables"},
         "run": {"time_step", "end_time"}}
 
@@ -102,7 +104,7 @@ def numbers(found):
 
 def command(liggghts, script, out, found, ranks):
     """The mpirun line."""
-    line = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(ranks), str(liggghts), "-in", str(script),
+    line = ["mpirun", *UNBOUND, "-np", str(ranks), str(liggghts), "-in", str(script),
             "-log", str(out / "liggghts.log"), "-screen", "none", "-var", "out_folder", str(out)]
     for name, text in found.items():
         line += ["-var", name, text]

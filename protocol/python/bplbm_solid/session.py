@@ -168,7 +168,8 @@ class Solid:
 
     def _send(self, states: np.ndarray, shapes: np.ndarray, report: Optional[Report]) -> List[np.ndarray]:
         """@return  indices of the particles that each fluid rank got"""
-        head = self.interval, self.interval * self._duration, self.flags & (frames.LAST | frames.CHECKPOINT)
+        wish = frames.STOP_WISHED if self._channel.signals.last else 0
+        head = self.interval, self.interval * self._duration, self.flags & (frames.LAST | frames.CHECKPOINT) | wish
         said = None if report is None else report.encoded(self.bonds_wanted)
         routing.refuse_astray(self.fluid, states, self.interval)
         by, sent = routing.routed_by(shapes), []

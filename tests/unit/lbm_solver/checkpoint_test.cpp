@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -49,13 +50,53 @@ class CheckpointFileTest : public testing::Test {
 TEST_F(CheckpointFileTest, IsReadAsItWasWritten) {
   write_checkpoint(path(), sample(), 7);
   EXPECT_TRUE(read_checkpoint(path()) == sample());
-  const Record some = read_checkpoint(path(), {"list"});
-  EXPECT_THROW(some.get<std::vector<double>>("list"), std::invalid_argument);
+  const Record some = read_checkpoint(path());
   EXPECT_THROW(some.integer("number"), std::invalid_argument);
   EXPECT_THROW(some.part("nothing"), std::invalid_argument);
   const std::string first = test::read_file(path());
   write_checkpoint(path(), sample(), 7);
   EXPECT_TRUE(first == test::read_file(path()));  // equal records are equal files
+}
+
+// In pieces of some megabytes: those of this box are four, and end within a layer.
+TEST_F(CheckpointFileTest, HoldsNumbersOfCells) {
+  const Decomposition box(Domain{30, 70, Side::Wall, Side::Wall, 50});
+  std::vector<double> list(30 * 70 * 50 * 19);
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] = std::sqrt(static_cast<double>(i));
+  Record part, record;
+  part.set("cells", box.values_of(list, 19));
+  record.set("part", part);
+  write_checkpoint(path(), record, 7);
+  const Record read = read_checkpoint(path());
+  const CellValues& values = read.part("part").cells("cells", box.domain().cells(), 19);
+  EXPECT_TRUE(box.own_values(values) == list);
+  EXPECT_TRUE(read == record);
+  list[12345] = 0.0;  // the record refers to it
+  EXPECT_FALSE(read == record);
+  EXPECT_TRUE(read == read.kept());
+  std::vector<double> line(5 * 19);  // some cells of a row
+  values.read({{21, 33, 44}, {5, 1, 1}}, line);
+  const std::size_t first = 19 * (30 * (70 * 44 + 33) + 21);
+  for (std::size_t i = 0; i < line.size(); ++i) EXPECT_EQ(line[i], list[first + i]);
+  EXPECT_THROW(read.part("part").cells("cells", {30, 50, 70}, 19), std::invalid_argument);
+  EXPECT_THROW(read.part("part").cells("none", {30, 70, 50}, 19), std::invalid_argument);
+}
+
+TEST(Pieces, HoldEachCellOnceInItsOrder) {
+  for (const CellRange& range : {CellRange{{3, 4, 5}, {30, 70, 50}},
+                                 {{0, 0, 0}, {2000, 9, 1}},
+                                 {{1, 0, 0}, {7, 1, 900}},
+                                 {{0, 0, 0}, {100000, 3, 2}}}) {
+    std::vector<Cell3> in_pieces, all;
+    for (const CellRange& piece : pieces_of(range, 152)) {
+      EXPECT_TRUE(range.holds(piece));
+      EXPECT_TRUE(piece.count() * 152 <= std::size_t{4} << 20 ||
+                  piece.size[1] * piece.size[2] == 1);
+      piece.each([&](const Cell3& c, std::size_t) { in_pieces.push_back(c); });
+    }
+    range.each([&](const Cell3& c, std::size_t) { all.push_back(c); });
+    EXPECT_TRUE(in_pieces == all);
+  }
 }
 
 TEST_F(CheckpointFileTest, KeepsTheOneBefore) {
@@ -117,7 +158,7 @@ TEST_F(CheckpointFileTest, OfADamagedPairTheOneBeforeIsTaken) {
                      fluid_part_before(folder_.path(), "checkpoint"));
   }
   const RestartOptions options{"checkpoint", {}};
-  const auto found = find_restart(scene, folder_.path(), options, true);
+  const auto found = find_restart(scene, folder_.path(), options);
   EXPECT_EQ(found->interval, 20);
   EXPECT_FALSE(found->earlier);
   EXPECT_NO_THROW(check_same_scene(*found, scene, plan, options));
@@ -126,7 +167,7 @@ TEST_F(CheckpointFileTest, OfADamagedPairTheOneBeforeIsTaken) {
     for (int trial = 0; trial < 50; ++trial) {
       const std::uint64_t bit = random() >> 8U;
       flip(part, bit);
-      const auto other = find_restart(scene, folder_.path(), options, true);
+      const auto other = find_restart(scene, folder_.path(), options);
       EXPECT_TRUE(other->earlier) << part << ' ' << bit;
       EXPECT_EQ(other->interval, 10);
       EXPECT_NE(other->remark.find(part), std::string::npos) << other->remark;
@@ -134,7 +175,7 @@ TEST_F(CheckpointFileTest, OfADamagedPairTheOneBeforeIsTaken) {
     }
   flip(path(), 4321);
   flip(parts.name(10), 4321);
-  EXPECT_THROW(find_restart(scene, folder_.path(), options, true), InputError);
+  EXPECT_THROW(find_restart(scene, folder_.path(), options), InputError);
 }
 
 TEST_F(CheckpointFileTest, NamesEveryKeyOfAScene) {

@@ -138,6 +138,25 @@ TEST(MeshFractions, OfACurvedSurfaceAreShifted) {
   EXPECT_NEAR(taken, hollow, 0.1 * std::abs(hollow));
 }
 
+// A body far smaller than a cell covers no more than its own size tells, up to the correction of
+// one that is two cells wide. (The correction for its curvature once filled the whole box.)
+TEST(Fractions, OfBodiesSmallerThanACellFallWithTheirSize) {
+  for (const int dimension : {2, 3}) {
+    const Domain domain = dimension == 2 ? Domain{20, 18, Side::Wall, Side::Wall} : kDomain;
+    const RadiusShift shift = radius_shift("resistance", dimension);
+    for (double r = 1.0; r > 1e-7; r *= 0.3) {
+      const double whole =
+          dimension == 2 ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r;
+      const Vec3 at(9.3, 8.4, dimension == 2 ? 0.0 : 8.6);
+      EXPECT_LE(sum(fractions({Ball{at, r, false}}, domain, shift)), 1.6 * whole + 1e-12) << r;
+      if (dimension == 3) {
+        const Geometry mesh = of(test::sphere_mesh(at, r, 2));
+        EXPECT_LE(sum(fractions(mesh, domain, shift)), 1.6 * whole) << r;
+      }
+    }
+  }
+}
+
 TEST(TriangleMesh, KnowsItsMeanCurvature) {
   const auto mean = [](const std::vector<double>& v) {
     return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <numbers>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/image_file.h"
@@ -62,6 +63,29 @@ TEST_F(ObstacleFiles, AMeshIsScaledTurnedAndMoved) {
   EXPECT_LT((low - Vec3(0.004, 0.002, 0.001)).norm(), 1e-12);
   EXPECT_LT((high - Vec3(0.006, 0.003, 0.004)).norm(), 1e-12);
   EXPECT_NEAR(s.obstacles[0].mesh->volume, 6e-9, 1e-20);
+}
+
+TEST_F(ObstacleFiles, ACylinderLiesBetweenItsEndsAndHasTheVolumeOfARoundOne) {
+  const Scene s =
+      read(3, "from = [0.002, 0.002, 0.004]\nto = [0.006, 0.005, 0.004]\ndiameter = 0.002");
+  const MeshScene& mesh = *s.obstacles[0].mesh;
+  const double exact = std::numbers::pi * 1e-6 * 0.005;
+  EXPECT_NEAR(mesh.volume, exact, 1e-12 * exact);
+  EXPECT_NEAR(enclosed_volume(*mesh.surface), exact, 1e-12 * exact);
+  const auto [low, high] = bounds(*mesh.surface);
+  // the ends are circles across (4, 3, 0) mm
+  EXPECT_LT((low - Vec3(0.002 - 0.0006, 0.002 - 0.0008, 0.003)).norm(), 2e-7);
+  EXPECT_LT((high - Vec3(0.006 + 0.0006, 0.005 + 0.0008, 0.005)).norm(), 2e-7);
+  EXPECT_EQ(defects(*mesh.surface).open + defects(*mesh.surface).turned, 0U);
+}
+
+TEST_F(ObstacleFiles, ACylinderThatIsNoneIsRefused) {
+  refused(2, "from = [0.002, 0.002]\nto = [0.006, 0.005]\ndiameter = 0.002",
+          {"obstacle.diameter", "in three dimensions only", "centre and diameter for a disc"});
+  refused(3, "from = [0.002, 0.002, 0.004]\nto = [0.002, 0.002, 0.004]\ndiameter = 0.002",
+          {"obstacle.to", "equal to from"});
+  refused(3, "from = [0.02, 0.02, 0.04]\nto = [0.02, 0.02, 0.05]\ndiameter = 0.002",
+          {"outside of the box"});
 }
 
 TEST_F(ObstacleFiles, AnAsciiAndABinaryMeshAreTheSame) {
@@ -170,6 +194,8 @@ TEST_F(ObstacleFiles, ABadImageIsDescribed) {
   refused(3, raw + "at = [0.006, 0, 0]", {"takes cells 6 … 10 along x, the box has 8"});
   refused(3, raw + "cut_to = [5, 3, 2]", {"nothing lies between 0 and 5 in x"});
   refused(3, test::replaced(raw, "voxel = 0.001", "voxel = 0.0015"), {"is 1.5 cells"});
+  for (const char* voxel : {"voxel = 5e-30", "voxel = 5e-300", "voxel = 1e30"})
+    refused(3, test::replaced(raw, "voxel = 0.001", voxel), {"cells", "10000 at most"});
   refused(3, test::replaced(raw, "voxel = 0.001", "voxel = 0.0005"),
           {"has 3 voxels along y, and 2 of them make a cell"});
   refused(3, raw + "[[obstacle]]\nimage = \"rock.jpg\"\nvoxel = 1\nthreshold = 1", {"rock.jpg"});

@@ -46,6 +46,16 @@ TEST(OutputTimes, EveryStateWhereLessThanAnIntervalIsAskedFor) {
       EXPECT_TRUE(OutputTimes(every, 1e-3).due(state)) << every << ' ' << state;
 }
 
+TEST(OutputTimes, NeverAgainWhereTheTimeIsLongerThanAnyRun) {
+  for (const double every : {1e12, 1e17, 1e18, 1e300}) {
+    const OutputTimes times(every, 1e-3);
+    EXPECT_TRUE(times.due(0)) << every;
+    for (const std::int64_t state : {1, 2, 1000, 1000000000})
+      EXPECT_GE(times.next(state), 999'999'999'999'999) << every;
+  }
+  EXPECT_EQ(first_state(1e300, 1e-3), first_state(1e200, 1e-3));
+}
+
 TEST(OutputTimes, FirstStateOfATime) {
   EXPECT_EQ(first_state(1.1, 0.1), 11);  // 1.1 / 0.1 is 11.000000000000002
   EXPECT_EQ(first_state(0.7, 0.1), 7);   // 0.7 / 0.1 is 6.999999999999999

@@ -42,15 +42,19 @@ protocol::Particle grain(std::int64_t id, double x, double y, double radius = 0.
   return {{id, {x, y, 0.0}, {0.1, 0.2, 0.0}, {0.0, 0.0, 3.0}}, {id, radius, 1.0, 1e-4, 2}};
 }
 
+/// A box of as many cells as the frames below have.
+Decomposition small_box(int dimension) {
+  return Decomposition(Domain{3, 2, Side::Wall, Side::Wall, dimension == 3 ? 2 : 1});
+}
+
 FieldFrame small_frame(int dimension) {
   FieldFrame f;
-  f.nx = 3;
-  f.ny = 2;
-  f.nz = dimension == 3 ? 2 : 1;
-  const std::size_t cells = static_cast<std::size_t>(f.nx) * f.ny * f.nz;
-  f.pressure.assign(cells, 1.0F);
-  f.velocity.assign(3 * cells, 0.5F);
-  f.solid_fraction.assign(cells, 0.0F);
+  f.cells.fields = {{"pressure", "Pa", 1}, {"velocity", "m/s", 3}, {"solid_fraction", "1", 1}};
+  f.cells.make = [](const CellRange& piece, std::span<float> to) {
+    std::ranges::fill(to, 0.0F);
+    std::ranges::fill(to.first(piece.count()), 1.0F);
+    std::ranges::fill(to.subspan(piece.count(), 3 * piece.count()), 0.5F);
+  };
   f.particles = {grain(7, 0.02, 0.03), grain(9, 0.04, 0.03)};
   f.loads = {{7, {1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, {9, {7.0, 8.0, 9.0}, {0.0, 0.0, 0.1}}};
   f.bond_ends.assign(2 * dimension, 0.02);
@@ -63,7 +67,9 @@ TEST(FieldWriter, NamesColumnsAndUnits) {
   for (const int dimension : {2, 3}) {
     const test::TemporaryFolder folder;
     FieldWriter writer(folder.path(), {0.01, 0.1, 1000.0, 1.0, {0.0, 0.0, 0.0}}, dimension);
-    writer.write(small_frame(dimension));
+    writer.write(small_frame(dimension), small_box(dimension));
+    EXPECT_EQ(numbers(folder.path() + "/fields.h5", "/frame000000/velocity"),
+              std::vector<double>(dimension == 3 ? 36 : 18, 0.5));
     const std::string file = folder.path() + "/fields.h5", frame = "/frame000000/";
     const std::string columns = attribute(file, frame + "particles", "columns");
     const std::size_t width = numbers(file, frame + "particles").size() / 2;
@@ -95,7 +101,7 @@ TEST(FieldWriter, NamesColumnsAndUnits) {
 TEST(FieldWriter, ShowsFluidAndParticlesInOnePlace) {
   const test::TemporaryFolder folder;
   FieldWriter writer(folder.path(), {0.01, 0.1, 1000.0, 1.0, {0.5, 0.25, 0.0}});
-  writer.write(small_frame(2));
+  writer.write(small_frame(2), small_box(2));
   const std::string text = read_file(folder.path() + "/fields.xdmf");
   EXPECT_EQ(text.find("2DCoRectMesh"), std::string::npos);
   EXPECT_NE(text.find(R"(TopologyType="3DCoRectMesh" Dimensions="2 3 4")"), std::string::npos)
@@ -115,6 +121,8 @@ TEST(Summary, NamesTheUnitOfEveryNumber) {
   Summary s;
   s.time_share["sweep"] = 1.0;
   s.megabytes["populations"] = 2.0;
+  s.peak_megabytes["first_rank"] = 3.0;
+  s.writing["fields"] = 0.1;
   s.parameters = {{"cell", 1e-4}, {"tau", 0.8}};
   s.solid = protocol::SolidReport{3, protocol::BondCounts{10, 4, 3, 2, 1}, {}};
   const test::TemporaryFolder folder;

@@ -4,6 +4,8 @@ import contextlib
 import io
 import json
 import pathlib
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -12,7 +14,7 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from bplbm import output_folder, result, run, solid_alone  # noqa: E402
+from bplbm import mpi_job, output_folder, placement, result, run, solid_alone  # noqa: E402
 from bplbm.options import arguments, scene_files  # noqa: E402
 from bplbm.scenes import find, scenes  # noqa: E402
 
@@ -80,6 +82,22 @@ class Launch(unittest.TestCase):
         for job_code in (1, 2, 3):
             self.assertEqual(self.run_main("settling_disc", "--no-study", job_code=job_code)[0], job_code)
 
+    def test_only_what_a_run_needs_is_built(self):
+        """tools/run builds what --look prints."""
+        for words, there, targets in (
+                (["settling_disc"], False, ["lbm_2d", "liggghts"]), (["settling_disc"], True, ["lbm", "liggghts"]),
+                (["ten_cate_sphere"], False, ["lbm", "liggghts"]), (["cylinder_flow"], False, ["lbm_2d"]),
+                (["settling_disc", "--engine", "lammps"], True, ["lbm", "lammps_engine"]),
+                (["settling_disc", "--engine", "c"], True, ["lbm", "c_engine"]),
+                (["settling_disc", "--engine", "python"], True, ["lbm"]),
+                (["settling_disc", "--engine-command", "true"], True, ["lbm"])):
+            with tempfile.TemporaryDirectory() as folder:
+                lbm = pathlib.Path(folder) / "lbm"
+                if there:
+                    lbm.touch()
+                with mock.patch.object(run, "BIN", lbm.parent):
+                    self.assertEqual(run.programs(arguments(words)), targets, words)
+
     def test_unknown_names_are_listed(self):
         for words, expected in ((["nothing"], "settling_disc"),
                                 (["settling_disc", "--set", "nothing"], "resolved, fine"),
@@ -130,6 +148,75 @@ class Launch(unittest.TestCase):
             code, text = self.run_main("settling_disc", *words)
             self.assertEqual(code, 2)
             self.assertIn(said, text)
+
+
+class Cores(unittest.TestCase):
+    """Which cores a job's processes get."""
+
+    def place(self, wanted, there=(0, 2, 4, 6), folder="", **more):
+        with mock.patch.object(placement, "cores", lambda: list(there)):
+            return placement.Placement(wanted, folder=folder, **more)
+
+    def test_each_process_has_its_own(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = self.place([("fluid", 2), ("solid", 1)], folder=folder)
+            self.assertEqual(place.cores, [[0, 2], [4]])
+            self.assertEqual(place.describe(), "fluid on 0,2, solid on 4")
+            line = place.bound(["mpirun", *placement.UNBOUND, "-np", "1", "lbm"])
+            self.assertEqual(line[-3:], ["-np", "1", "lbm"])
+            self.assertEqual(pathlib.Path(line[line.index("--rankfile") + 1]).read_text(),
+                             "rank 0=localhost slot=0,2\nrank 1=localhost slot=4\n")
+            place.release()
+
+    def test_a_second_job_takes_others_and_a_third_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            first, second = (self.place([("fluid", 1), ("solid", 1)], folder=folder) for _ in range(2))
+            self.assertEqual((first.cores, second.cores), ([[0], [2]], [[4], [6]]))
+            third = self.place([("fluid", 1)], folder=folder)
+            self.assertEqual(third.cores, [])
+            self.assertIn("other jobs hold the cores", third.describe())
+            first.release()
+            again = self.place([("fluid", 1)], folder=folder)
+            self.assertEqual(again.cores, [[0]])
+            for place in (second, again):
+                place.release()
+
+    def test_too_few_cores_or_the_users_wish_leave_the_line_as_it_is(self):
+        line = ["mpirun", *placement.UNBOUND, "-np", "1", "lbm"]
+        for place, why in ((self.place([("fluid", 4), ("solid", 1)]), "5 busy threads on 4 cores"),
+                           (placement.of_job(1, 1, 1, no_bind=True), "--no-bind")):
+            self.assertEqual(place.bound(line), line)
+            self.assertIn(why, place.describe())
+        with mock.patch.dict("os.environ", {"SLURM_JOB_ID": "7"}):
+            self.assertIn("batch", placement.of_job(1, 1, 1).describe())
+
+    def test_numbers_as_mpirun_reads_them(self):
+        self.assertEqual(placement.runs([0, 1, 2, 5, 7, 8]), "0-2,5,7-8")
+        self.assertEqual(placement.runs([3]), "3")
+
+    def test_of_two_hardware_threads_of_a_core_one_counts(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for cpu in range(4):
+                place = pathlib.Path(folder, f"cpu{cpu}/topology")
+                place.mkdir(parents=True)
+                (place / "thread_siblings_list").write_text(f"{cpu % 2},{cpu % 2 + 2}\n")
+            with mock.patch.object(placement, "TOPOLOGY", pathlib.Path(folder)), \
+                    mock.patch("os.sched_getaffinity", lambda _: {1, 2, 3}):
+                self.assertEqual(placement.cores(), [1, 2])
+
+    def test_only_processes_that_share_cores_wait_politely(self):
+        self.assertNotIn("OMPI_MCA_mpi_yield_when_idle", mpi_job.environment(shared=False))
+        self.assertEqual(mpi_job.environment(shared=True)["OMPI_MCA_mpi_yield_when_idle"], "1")
+
+    @unittest.skipIf(shutil.which("mpirun") is None or len(placement.cores()) < 2, "needs mpirun and two cores")
+    def test_mpirun_binds_both_programs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = placement.Placement([("fluid", 1), ("solid", 1)], folder=folder)
+            show = ["-np", "1", "/usr/bin/python3", "-c", "import os; print(sorted(os.sched_getaffinity(0)))"]
+            job = subprocess.run(place.bound(["mpirun", *placement.UNBOUND, *show, ":", *show]), capture_output=True, text=True,
+                                 env=mpi_job.environment(shared=False), check=False, timeout=60)
+            self.assertEqual(sorted(job.stdout.split()), sorted(f"[{c[0]}]" for c in place.cores), job.stderr)
+            place.release()
 
 
 class SolidAlone(unittest.TestCase):

@@ -101,6 +101,13 @@ class Images(unittest.TestCase):
             self.assertEqual(axes.get_ylabel()[0], "z")
             figure.clear()
 
+    def test_a_cylinder_is_drawn_along_its_axis(self):
+        box = {"box": {"size": [1.0, 1.0, 1.0]}, "fluid": {"density": 1.0, "kinematic_viscosity": 1.0}}
+        for end, corners in (([0.8, 0.5, 0.5], 5), ([0.2, 0.9, 0.5], None)):
+            rod = {"from": [0.2, 0.5, 0.5], "to": end, "diameter": 0.1}
+            patch = figure_of({**box, "obstacle": [rod]}, pathlib.Path("none")).axes[0].patches[0]
+            self.assertEqual(len(patch.get_xy()) if corners else patch.get_radius(), corners or 0.05)
+
     def test_what_moves_is_said(self):
         drum = {"centre": [0.5, 0.5], "diameter": 0.6, "hollow": True, "motion": "rotation", "angular_velocity": -2.0, "surface_only": True}
         belt = {"from": [0.1, 0.1], "to": [0.3, 0.2], "motion": "linear", "velocity": [0.2, 0.0]}

@@ -128,6 +128,11 @@ class Drawing:
                 self.image(o, folder)
             elif "mesh" in o:
                 self.mesh(o, folder)
+            elif "diameter" in o and "from" in o:  # a cylinder; one that points at the reader is a dot
+                (x0, y0), (x1, y1) = self.place(o["from"]), self.place(o["to"])
+                self.parts.append(f'<path d="M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}" stroke="#999" stroke-linecap="'
+                                  f'{"round" if o["from"][::2] == o["to"][::2] else "butt"}" '
+                                  f'stroke-opacity=".8" stroke-width="{o["diameter"] * self.scale:.1f}"/>')
             elif "diameter" in o:
                 x, y = self.place(o["centre"])
                 fill = "none" if o.get("hollow") else "#999"

@@ -55,7 +55,7 @@ def run_scene(folder, scene, overlay, files=(), again=False, limit=900.0, ranks=
         line += [":", "-np", "1", str(BIN / "liggghts"), "-in", str(CASES / scene / "in.liggghts"), "-log",
                  str(folder / "liggghts.log"), "-screen", "none", "-var", "out_folder", str(folder)]
     try:
-        job = subprocess.run(line, env={**environment(ranks + 1), **ONE_MACHINE}, capture_output=True, text=True,
+        job = subprocess.run(line, env={**environment(shared=True), **ONE_MACHINE}, capture_output=True, text=True,
                              timeout=limit, check=False)
         code, output = job.returncode, job.stdout + job.stderr
     except subprocess.TimeoutExpired:

@@ -358,6 +358,7 @@ void run(Channel& channel) {
   for (;; ++head.interval) {
     head.time = static_cast<double>(head.interval) * hello.step * hello.solid_steps;
     if (head.interval > fluid.first_interval) discs.insert(static_cast<int>(head.interval));
+    if (signalled()) head.flags |= kStopWished;
     if (head.flags & kCheckpoint) parts.keep(head.interval, discs.checkpoint(head));
     const auto reply = session.exchange(head, discs.states, discs.shapes);
     if (head.flags & kLast) return;

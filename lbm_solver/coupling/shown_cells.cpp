@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/coupling/shown_cells.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "lbm_solver/solver/viscosity_use.h"
+
+namespace lbm {
+namespace {
+
+/// Fills a piece field after field, a row of the fluid at a time.
+class Painter {
+ public:
+  Painter(Fluid& fluid, const Plan& plan, const CellRange& piece, std::span<float> to,
+          bool viscosity)
+      : fluid_(fluid),
+        plan_(plan),
+        piece_(piece),
+        nx_(static_cast<std::size_t>(piece.size[0])),
+        rho_(nx_),
+        nu_(nx_),
+        u_{rho_, rho_, rho_} {
+    const std::size_t cells = piece.count();
+    pressure_ = to.first(cells);
+    velocity_ = to.subspan(cells, 3 * cells);
+    if (fluid.has_solids()) solid_ = to.subspan(4 * cells, cells);
+    if (viscosity) viscosity_ = to.last(cells);
+  }
+
+  /// @param y, z  in the piece
+  void row(int y, int z) {
+    const Cell3& first = fluid_.cells().begin;
+    const int row_y = piece_.begin[1] + y - first[1], row_z = piece_.begin[2] + z - first[2];
+    const std::size_t at = nx_ * (static_cast<std::size_t>(z) * piece_.size[1] + y);
+    const Units& units = plan_.units;
+    fluid_.row(row_y, row_z, rho_, {u_[0], u_[1], u_[2]});
+    for (std::size_t x = 0; x < nx_; ++x) {
+      pressure_[at + x] = static_cast<float>((rho_[x] - 1.0) * units.pressure());
+      for (std::size_t k = 0; k < 3; ++k)
+        velocity_[3 * (at + x) + k] = static_cast<float>(u_[k][x] * units.velocity());
+      if (!solid_.empty())
+        solid_[at + x] =
+            static_cast<float>(fluid_.solid_fraction(static_cast<int>(x), row_y, row_z));
+    }
+    if (viscosity_.empty()) return;
+    row_viscosity(fluid_, plan_.kernel.parameters, row_y, row_z, nu_);
+    for (std::size_t x = 0; x < nx_; ++x)
+      viscosity_[at + x] = static_cast<float>(nu_[x] * (units.dx * units.dx / units.dt));
+  }
+
+ private:
+  Fluid& fluid_;
+  const Plan& plan_;
+  const CellRange& piece_;
+  const std::size_t nx_;
+  std::vector<double> rho_, nu_;
+  std::array<std::vector<double>, 3> u_;
+  std::span<float> pressure_, velocity_, solid_, viscosity_;
+};
+
+}  // namespace
+
+CellFields shown_cells(Fluid& fluid, const Plan& plan, bool viscosity) {
+  CellFields shown{{{"pressure", "Pa", 1}, {"velocity", "m/s", 3}}, {}};
+  if (fluid.has_solids()) shown.fields.push_back({"solid_fraction", "1", 1});
+  if (viscosity) shown.fields.push_back({"viscosity", "m2/s", 1});
+  shown.make = [&fluid, &plan, viscosity](const CellRange& piece, std::span<float> to) {
+    Painter painter(fluid, plan, piece, to, viscosity);
+    for (int z = 0; z < piece.size[2]; ++z)
+      for (int y = 0; y < piece.size[1]; ++y) painter.row(y, z);
+  };
+  return shown;
+}
+
+Vec3 mean_arrived_momentum(const Fluid& fluid) {
+  constexpr double kGrain = 0x1p-44;  // of the whole numbers
+  constexpr double kMost = 8.0;       // a run stops long before
+  constexpr double kHigh = 0x1p32;    // they are added up in two parts, so that none gets too large
+  std::array<double, 6> sum{};
+  const Cell3& n = fluid.cells().size;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y) {
+      std::array<std::int64_t, 3> row{};
+      for (int x = 0; x < n[0]; ++x) {
+        const Vec3 arrived = fluid.arrived_momentum(x, y, z);
+        for (int k = 0; k < 3; ++k)
+          if (std::abs(arrived[k]) < kMost)
+            row[k] += std::llround(static_cast<float>(arrived[k]) / kGrain);
+      }
+      for (int k = 0; k < 3; ++k) {
+        const std::int64_t high = row[k] >> 32;
+        sum[k] += static_cast<double>(high);
+        sum[3 + k] += static_cast<double>(row[k] - (high << 32));
+      }
+    }
+  fluid.ranks().sum(sum);
+  const Cell3 all = fluid.domain().cells();
+  const double cells = static_cast<double>(all[0]) * all[1] * all[2];
+  Vec3 mean;
+  for (int k = 0; k < 3; ++k) mean[k] = (sum[k] * kHigh + sum[3 + k]) * kGrain / cells;
+  return mean;
+}
+
+}  // namespace lbm
