@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
-from bplbm import Run, draw_slice, quantity, read_table, result, studies
+from bplbm import Run, draw_viscosity, quantity, read_table, result, studies
 
 REST, SHEARED, STOPPED = (0.15, 0.3), (0.5, 1.3), (1.5, 1.8)  # s: after the transients, see plates.csv
 SHEAR_RATE, YIELD_STRESS, PLASTIC = 15.0, 13.7, 0.15  # 1/s, Pa, Pa s
@@ -99,18 +99,28 @@ def picture_history(run, mud, others):
     run.save(figure, "history.png")
 
 
+def picture_viscosity(run):
+    """A plane across the box while the mud holds the cuttings, and while it is sheared."""
+    if "viscosity" not in run.frame(run.frames()[-1][1]):
+        return
+    figure, axes = plt.subplots(1, 2, figsize=(7.6, 3.6), sharey=True)
+    thinnest, thickest = 0.5 * apparent(), run.parameters["density"] * 0.0443
+    for ax, (title, time) in zip(axes, {"at rest": 0.2, "sheared": 1.2}.items()):
+        time, name = min(run.frames(), key=lambda f: abs(f[0] - time))
+        image = draw_viscosity(ax, run, name, "x", (thinnest, thickest))
+        ax.set_title(f"{title}, {time:.1f} s", fontsize=9)
+    axes[1].set_ylabel("")
+    figure.colorbar(image, ax=axes, label="viscosity of the mud [Pa s]", fraction=0.03, pad=0.02)
+    run.save(figure, "field.png")
+
+
 def main():
     run = Run(sys.argv[1])
     mud, others = fall(run), {name: fall(r) for name, r in studies(run).items()}
     thick = run.parameters["density"] * 0.0443
     run.write_results(judged(run, mud, others.get(OIL), thick), quantities(run, mud, others))
     picture_history(run, mud, others)
-    figure, ax = plt.subplots(figsize=(4.4, 4.0))
-    frames = run.frames()
-    sheared = min(frames, key=lambda f: abs(f[0] - 1.2))[1]
-    ax.set_title("sheared", fontsize=9)
-    draw_slice(ax, run, sheared, "x")
-    run.save(figure, "field.png")
+    picture_viscosity(run)
 
 
 if __name__ == "__main__":

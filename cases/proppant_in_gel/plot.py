@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
-from bplbm import Run, draw_slice, quantity, read_table, result, studies
+from bplbm import Run, draw_slice, draw_viscosity, quantity, read_table, result, studies
 
 NEWTONIAN = "fluid-newtonian"
 FLUIDS = {"": (1.0, 0.5), NEWTONIAN: (0.0966, 1.0)}  # consistency [Pa sⁿ], index
@@ -141,15 +141,26 @@ def picture(found, run):
     run.save(figure, "transport.png")
 
 
+def picture_plane(run):
+    """Speed and viscosity on the plane half-way up, at the end."""
+    figure, axes = plt.subplots(1, 2, figsize=(7.6, 3.6), sharey=True)
+    last = run.frames()[-1][1]
+    image = draw_slice(axes[0], run, last, "z", length_unit=1e-3)
+    figure.colorbar(image, ax=axes[0], label="speed [m/s]", fraction=0.05, pad=0.03)
+    if "viscosity" in run.frame(last):
+        image = draw_viscosity(axes[1], run, last, "z", length_unit=1e-3)
+        figure.colorbar(image, ax=axes[1], label="viscosity [Pa s]", fraction=0.05, pad=0.03)
+    axes[1].set_ylabel("")
+    run.save(figure, "field.png")
+
+
 def main():
     run = Run(sys.argv[1])
     own = "" if run.summary.get("variant", "") in ("", "resolved") else run.summary["variant"]
     found = {own: transport(run, own), **{name: transport(r, name) for name, r in studies(run).items() if name in FLUIDS}}
     run.write_results(judged(found), quantities({"": found.get("", found[own]), **found}, run))
     picture(found, run)
-    figure, ax = plt.subplots(figsize=(4.4, 4.0))
-    draw_slice(ax, run, run.frames()[-1][1], "z", length_unit=1e-3)
-    run.save(figure, "field.png")
+    picture_plane(run)
 
 
 if __name__ == "__main__":

@@ -69,11 +69,12 @@ struct BoundaryScene {
   std::array<std::optional<double>, 2> from, to;
   Vec3 velocity;  ///< [m/s]; at the middle of a parabola
   bool parabolic = false;
-  ProfileScene profile;    ///< velocity × factor along the side
-  double pressure = 0.0;   ///< against the reference [Pa]
-  double ramp = 0.0;       ///< time in which the value comes up [s]
-  double frequency = 0.0;  ///< value × cos(2 pi f t) [Hz]
-  TimeTableScene table;    ///< value × factor
+  ProfileScene profile;             ///< velocity × factor along the side
+  double pressure = 0.0;            ///< against the reference [Pa]
+  std::optional<double> flow_rate;  ///< into the box, for which a pressure is found [m³/s]
+  double ramp = 0.0;                ///< time in which the value comes up [s]
+  double frequency = 0.0;           ///< value × cos(2 pi f t) [Hz]
+  TimeTableScene table;             ///< value × factor
 };
 
 /// A surface from a file, as it lies in the box.
@@ -170,6 +171,7 @@ struct NumericsScene {
   std::string weight = "auto";      ///< viscous, balanced or fraction; auto: viscous, balanced
   std::optional<double> magic;      ///< Λ of TRT; absent: see solver/plan.h
   double smagorinsky = 0.0;         ///< S_c; 0: no turbulence model
+  bool wale = false;                ///< its eddy viscosity adapts to walls
 };
 
 struct ParticleScene {

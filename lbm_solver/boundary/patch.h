@@ -116,6 +116,8 @@ class DensityPatch : public Patch {
   /// @param drho  density deviation on the side
   DensityPatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time);
   double drho(std::int64_t step) const { return drho_ * in_time_.factor(step); }
+  /// Another density deviation from the coming step on.
+  void hold(double drho) { drho_ = drho; }
   /// What arrives along a link from a side where that density is held.
   double at_density(const Sweep& sweep, const Link& link, double drho) const;
 
@@ -140,6 +142,7 @@ class PressurePatch final : public DensityPatch {
  public:
   PressurePatch(std::vector<Link> links, SideName side, double drho, const InTime& in_time)
       : DensityPatch(std::move(links), side, drho, in_time) {}
+  using DensityPatch::hold;
   void apply(const Sweep& sweep) override;
 };
 

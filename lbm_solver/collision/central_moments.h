@@ -24,18 +24,18 @@ class CentralMoments {
   const Force& force() const { return force_; }
   template <class V>
   [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m,
-                                           const V& fluid) const {
-    return local_tau<L>(f, m, fluid, viscosity_, force_);
+                                           const V& fluid, const V& eddies) const {
+    return local_tau<L>(f, m, fluid, eddies, viscosity_, force_);
   }
 
   template <class V>
-  [[gnu::always_inline]] void operator()(V (&f)[L::Q]) const {
+  [[gnu::always_inline]] void operator()(V (&f)[L::Q], const V& eddies) const {
     const Moments<L, V> m = moments<L>(f);
     const V rho = m.drho + V(1.0);
     const Vector<L, V> u = velocity<L>(m, force_);
     // Only rho, u and the stress survive the collision; Q gives the stress directly.
     const Symmetric<L, V> q = non_equilibrium<L>(f, m.drho, u, force_);
-    const V keep = V(1.0) - viscosity_.rate(q, rho);
+    const V keep = V(1.0) - viscosity_.rate(q, rho, eddies);
     Coefficients<L, V> k;
     k.each([&](auto a, auto b, auto c)
                __attribute__((always_inline)) { k.at[a][b][c] = after<a, b, c>(rho, keep, q); });

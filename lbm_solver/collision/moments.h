@@ -65,13 +65,14 @@ template <class L, class Force, class V>
 
 /// Relaxation time of a cell where the viscosity is a function of the shear rate there.
 /// @param fluid      part of the cell that is fluid
+/// @param eddies     share of the eddy viscosity (EddyField)
 /// @param viscosity  a class of the room viscosity/ @param force  a class of forcing.h
 template <class L, class Viscosity, class Force, class V>
 [[gnu::always_inline]] inline V local_tau(const V (&f)[L::Q], const Moments<L, V>& m,
-                                          const V& fluid, const Viscosity& viscosity,
-                                          const Force& force) {
+                                          const V& fluid, const V& eddies,
+                                          const Viscosity& viscosity, const Force& force) {
   return viscosity.tau(non_equilibrium<L>(f, m.drho, velocity<L>(m, force), force), m.drho + V(1.0),
-                       fluid);
+                       fluid, eddies);
 }
 
 }  // namespace lbm

@@ -16,6 +16,8 @@ struct CollisionParameters {
   double force_x = 0.0, force_y = 0.0, force_z = 0.0;  ///< body force on a cell
   /// Relaxation time as a function of the stress; null: tau, or Smagorinsky's
   std::shared_ptr<const RelaxationTable> viscosity_table = nullptr;
+  /// That of cells which a solid covers in part; null: the same
+  std::shared_ptr<const RelaxationTable> covered_table = nullptr;
 };
 
 }  // namespace lbm

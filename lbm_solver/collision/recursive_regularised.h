@@ -23,17 +23,17 @@ class RecursiveRegularised {
   const Force& force() const { return force_; }
   template <class V>
   [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m,
-                                           const V& fluid) const {
-    return local_tau<L>(f, m, fluid, viscosity_, force_);
+                                           const V& fluid, const V& eddies) const {
+    return local_tau<L>(f, m, fluid, eddies, viscosity_, force_);
   }
 
   template <class V>
-  [[gnu::always_inline]] void operator()(V (&f)[L::Q]) const {
+  [[gnu::always_inline]] void operator()(V (&f)[L::Q], const V& eddies) const {
     const Moments<L, V> m = moments<L>(f);
     const V rho = m.drho + V(1.0);
     const Vector<L, V> u = velocity<L>(m, force_);
     Symmetric<L, V> q = non_equilibrium<L>(f, m.drho, u, force_);
-    const V keep = V(1.0) - viscosity_.rate(q, rho);
+    const V keep = V(1.0) - viscosity_.rate(q, rho, eddies);
     for (V& part : q.at) part *= keep;
     Coefficients<L, V> a;
     a.each([&](auto x, auto y, auto z)

@@ -44,7 +44,8 @@ struct MagicRate {
 
 /// Relaxes the even and odd halves of the populations:
 ///   f± <- f± + ω± (f±^eq - f±) + (1 - ω±/2) S±,   ω⁺ = 1/τ, ω⁻ by the odd rule
-/// @param f  populations [q] that arrived, as deviations from rest; overwritten
+/// @param f       populations [q] that arrived, as deviations from rest; overwritten
+/// @param eddies  share of the eddy viscosity (EddyField), 1 where there is no such field
 template <class L, class OddRule, class Viscosity, class Force>
 class TwoRates {
  public:
@@ -67,18 +68,18 @@ class TwoRates {
   const Force& force() const { return force_; }
   template <class V>
   [[gnu::always_inline]] V relaxation_time(const V (&f)[L::Q], const Moments<L, V>& m,
-                                           const V& fluid) const {
-    return local_tau<L>(f, m, fluid, viscosity_, force_);
+                                           const V& fluid, const V& eddies) const {
+    return local_tau<L>(f, m, fluid, eddies, viscosity_, force_);
   }
 
   template <class V>
-  [[gnu::always_inline]] void operator()(V (&f)[L::Q]) const {
+  [[gnu::always_inline]] void operator()(V (&f)[L::Q], const V& eddies) const {
     const Moments<L, V> m = moments<L>(f);
     const Vector<L, V> u = velocity<L>(m, force_);
     V even_rate(even_rate_), odd_rate(odd_rate_);
     if constexpr (Viscosity::local) {
       const Symmetric<L, V> q = non_equilibrium<L>(f, m.drho, u, force_);
-      const Halves<V> rates = viscosity_.rates(q, m.drho + V(1.0), odd_rule_);
+      const Halves<V> rates = viscosity_.rates(q, m.drho + V(1.0), eddies, odd_rule_);
       even_rate = rates.even;
       odd_rate = rates.odd;
     }

@@ -10,9 +10,11 @@
 
 namespace lbm {
 
-/// Writes a flow that is held, and what drives it, to `flow.csv`, in SI units.
+/// Writes a flow that is held, and what drives it, to `flow.csv`, in SI units: a pressure gradient
+/// in place of a body force, or the pressure on an opening.
 class HeldFlow {
  public:
+  static bool wanted_by(const Scene& scene);
   /// @param keep_until  a run that goes on keeps the lines before this time
   HeldFlow(const Scene& scene, const Plan& plan, const Decomposition& ranks,
            const std::string& folder, double keep_until);
@@ -24,9 +26,10 @@ class HeldFlow {
 
  private:
   const Units units_;
-  double to_flow_;                  // cross-section of the box times the unit of velocity [m³/s]
+  const bool by_force_;
+  double to_flow_;                  // unit of the flow that is measured [m³/s]
   std::optional<CsvWriter> table_;  // of rank 0
-  double flow_ = 0.0, pressure_gradient_ = 0.0;
+  double flow_ = 0.0, drive_ = 0.0;
 };
 
 }  // namespace lbm

@@ -86,7 +86,7 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
     field_times_.emplace(scene.output.fields_every, plan.interval());
   const bool flat = scene.box.dimension == 2;
   if (!scene.obstacles.empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
-  if (scene.fluid.flow) flow_.emplace(scene, plan, ranks, folder, keep);
+  if (HeldFlow::wanted_by(scene)) flow_.emplace(scene, plan, ranks, folder, keep);
   sensors_ = make_sensors(scene, plan, ranks, folder, keep);
   if (scene.output.average) average_.emplace(*scene.output.average, plan, ranks);
   if (scene.steady_below > 0.0) steady_.emplace(scene, plan, guard_every_ * plan.fluid_steps);

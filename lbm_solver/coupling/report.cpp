@@ -203,7 +203,9 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   part(p.kernel.force, "body force", "body force");
   part(p.kernel.parameters.viscosity_table != nullptr, name_of(s.fluid.law.model) + " viscosity",
        "viscosity that depends on shear");
-  part(p.kernel.parameters.smagorinsky > 0.0, "Smagorinsky turbulence", "turbulence model");
+  part(p.kernel.parameters.smagorinsky > 0.0,
+       p.kernel.eddies == EddyModel::Wale ? "WALE turbulence" : "Smagorinsky turbulence",
+       "turbulence model");
   const bool imb = p.scheme == SolidScheme::ImmersedMovingBoundary;
   part(p.kernel.solid_term != "none" || !imb,
        imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel) + ", loads"

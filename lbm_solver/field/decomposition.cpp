@@ -10,7 +10,7 @@
 namespace lbm {
 namespace {
 
-constexpr int kTag = 7101;
+constexpr int kTag = 7101, kFaceTag = 7120;
 constexpr int kLeastCells = 2;  // along an axis that is cut: boundaries look one cell inward
 
 template <class T>
@@ -77,6 +77,24 @@ void Decomposition::sum(std::span<double> values) const {
     for (std::size_t i = 0; i < all.size(); ++i) values[i % values.size()] += all[i];
   }
   MPI_Bcast(values.data(), n, MPI_DOUBLE, 0, comm_);
+}
+
+void Decomposition::exchange(int axis, std::vector<float> (&lists)[2]) const {
+  if (alone()) return;
+  MPI_Request requests[] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL, MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+  std::vector<float> arrived[2];
+  for (int high = 0; high < 2; ++high) {
+    const int rank = neighbour(axis, high), n = static_cast<int>(lists[high].size());
+    if (rank < 0) continue;
+    arrived[high].resize(lists[high].size());
+    // what leaves through a high face arrives through a low one
+    MPI_Irecv(arrived[high].data(), n, MPI_FLOAT, rank, kFaceTag + 1 - high, comm_,
+              &requests[high]);
+    MPI_Isend(lists[high].data(), n, MPI_FLOAT, rank, kFaceTag + high, comm_, &requests[2 + high]);
+  }
+  MPI_Waitall(4, requests, MPI_STATUSES_IGNORE);
+  for (int high = 0; high < 2; ++high)
+    if (neighbour(axis, high) >= 0) lists[high].swap(arrived[high]);
 }
 
 double Decomposition::max(double value) const {

@@ -67,6 +67,9 @@ class Decomposition {
   /// This rank's list again; on another grid the first rank gets the sum of all, the others zeros.
   /// @throws std::invalid_argument  they are of another length
   std::vector<double> own_part(std::span<const double> collected, std::size_t length) const;
+  /// Gives a list to the rank beyond each face of an axis that has one, and takes that rank's in
+  /// its place, of the same length. @param lists  [low, high] Collective.
+  void exchange(int axis, std::vector<float> (&lists)[2]) const;
   /// Rank 0's list, on every rank. Collective.
   void broadcast(std::vector<double>& values) const;
 

@@ -102,7 +102,8 @@ class ResistanceCollision {
     const V rho = m.drho + V(1.0);
     const V eps = fraction_of(cell.cover);
     V tau(tau_);
-    if constexpr (Collision::local_viscosity) tau = collide.relaxation_time(f, m, V(1.0) - eps);
+    if constexpr (Collision::local_viscosity)
+      tau = collide.relaxation_time(f, m, V(1.0) - eps, cell.eddies);
     const auto kind = kinds_of(cell.cover);
     const auto whole = eps >= V(kWhole);
     OddExchange<V> odd = surface_exchange<L, V>(eps, tau - V(0.5), V(mu_zero_));

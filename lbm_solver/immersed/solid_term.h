@@ -42,8 +42,9 @@ std::vector<std::string> known_solid_terms();
 /// What the cover map knows of a cell.
 template <class L>
 struct CoveredCell {
-  Pack cover;          ///< as in CoverBlock
-  Vector<L, Pack> us;  ///< solid velocity at the cell centre, lattice units
+  Pack cover;               ///< as in CoverBlock
+  Vector<L, Pack> us;       ///< solid velocity at the cell centre, lattice units
+  Pack eddies = Pack(1.0);  ///< share of the eddy viscosity (EddyField)
 };
 
 /// f_i^eq(rho, u) times one factor plus f_i^eq(rho, u_s) times another, as halves of pairs, for the
@@ -122,7 +123,8 @@ class CoveredCollision {
     const Vector<L, V> u = velocity<L>(m, NoForce<L>({}));
     V tau(weight_.tau);
     const V eps = fraction_of(cell.cover);
-    if constexpr (Collision::local_viscosity) tau = collide.relaxation_time(f, m, V(1.0) - eps);
+    if constexpr (Collision::local_viscosity)
+      tau = collide.relaxation_time(f, m, V(1.0) - eps, cell.eddies);
     const V weight = weight_(eps, tau);
     const auto kind = kinds_of(cell.cover);
     const auto of = [&](const Factor& factor) __attribute__((always_inline)) {
@@ -135,7 +137,7 @@ class CoveredCollision {
     V fluid[L::Q];
     if constexpr (!Collision::constant_rates) {
       unroll<L::Q>([&](auto q) __attribute__((always_inline)) { fluid[q] = f[q]; });
-      collide(fluid);
+      collide(fluid, cell.eddies);
     }
     f[0] = even_f * (f[0] + f[0]) + eq.rest();
     unroll<L::pairs>([&](auto p) __attribute__((always_inline)) {

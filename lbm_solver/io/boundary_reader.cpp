@@ -65,6 +65,9 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::strin
       t.fail("velocity", "has a component through the wall", "use kind = \"velocity\"");
   } else {
     b.pressure = t.number_or("pressure", 0.0, {}, "Pa");
+    if (b.kind == Kind::Pressure) b.flow_rate = t.optional_number("flow_rate", {}, "m³/s");
+    if (b.kind == Kind::Outflow && t.has("flow_rate"))
+      t.fail("flow_rate", "has no meaning for an outflow", "take kind = \"pressure\"");
   }
   if (b.kind != Kind::Outflow) {
     b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");

@@ -123,6 +123,16 @@ void settle_viscosity(const TableReader& root, Scene& scene) {
     root.fail("fluid.viscosity.smagorinsky", "stands beside numerics.smagorinsky",
               "give one of them");
   constant = std::max(constant, law.smagorinsky);
+  if (scene.numerics.wale && constant == 0.0)
+    root.fail("numerics.eddy_viscosity", "= \"wale\" stands without its constant",
+              "give numerics.smagorinsky, e.g. 0.1");
+  if (scene.numerics.wale && law.model != ViscosityModel::Newtonian &&
+      law.model != ViscosityModel::Smagorinsky)
+    root.fail(
+        "numerics.eddy_viscosity",
+        "= \"wale\" stands beside a viscosity that depends on the shear rate, whose table has "
+        "Smagorinsky's",
+        "leave it out");
   if (!law.shear_rate) law.shear_rate = typical_shear_rate(scene);
   scene.fluid.viscosity = ViscosityLaw(scene.fluid, *law.shear_rate).reference();
 }

@@ -146,6 +146,8 @@ constexpr Meaning kMeanings[] = {
      "Weight B of operators that have one; auto takes viscous, in three dimensions balanced "
      "(solids.md)."},
     {"numerics.smagorinsky", "Constant S_c of the turbulence model; 0 leaves it out."},
+    {"numerics.eddy_viscosity",
+     "wale: it vanishes at walls and solids as it should (viscosity.md); S_c stays its strength."},
     {"numerics.magic", "Λ of TRT.", "3/16; 1/10 beside cells by resistance"},
     {"particles.diameter", "Diameter of the particles."},
     {"particles.density", "Density of the particles."},
@@ -200,6 +202,10 @@ constexpr Meaning kMeanings[] = {
      "begins with the line time,factor [s, 1], straight between its lines."},
     {"boundary.repeat", "periodic: the table begins anew after its last line."},
     {"boundary.pressure", "Pressure of a pressure or outflow, against the reference."},
+    {"boundary.flow_rate",
+     "Flow into the box through a pressure boundary, for which its pressure is found from "
+     "`pressure` "
+     "on; flow.csv has both (boundaries.md)."},
     {"boundary.ramp", "Time in which the value comes up as ½(1 - cos)."},
     {"obstacle.centre", "Centre of a disc or sphere.", "required without from, mesh and image"},
     {"obstacle.diameter", "Its diameter, or that of a cylinder.", "required with centre"},

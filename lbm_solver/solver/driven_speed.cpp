@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lbm_solver/solver/motion_check.h"
+#include "lbm_solver/solver/place_check.h"
 
 namespace lbm {
 namespace {
@@ -52,6 +53,15 @@ double largest_pressure(const Scene& s) {
   return std::max(hi - lo, s.box.pressure_jump.cwiseAbs().maxCoeff());
 }
 
+double opening_speed(const Scene& s, const BoundaryScene& b) {
+  double area = s.box.dimension == 2 ? s.box.depth : 1.0;
+  for (int k = 0; k < s.box.dimension - 1; ++k) {
+    const Range part = extent(s, b, k);
+    area *= part.hi - part.lo;
+  }
+  return std::abs(b.flow_rate.value_or(0.0)) * b.table.largest() / area;
+}
+
 double mean_speed(const Scene& s) {
   if (!s.fluid.flow) return 0.0;
   double area = s.box.dimension == 2 ? s.box.depth : 1.0;
@@ -67,6 +77,9 @@ std::vector<Drive> drives(const Scene& s) {
   };
   add(s.initial.velocity.norm(),
       fmt::format("initial.velocity = {:.3g} m/s", s.initial.velocity.norm()));
+  for (const BoundaryScene& b : s.boundaries)
+    add(opening_speed(s, b),
+        fmt::format("boundary.flow_rate = {:.3g} m³/s", b.flow_rate.value_or(0.0)));
   for (const BoundaryScene& b : s.boundaries)
     add(b.velocity.norm() * b.table.largest() * b.profile.largest(),
         fmt::format("boundary.velocity = {:.3g} m/s", b.velocity.norm()));

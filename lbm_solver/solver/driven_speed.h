@@ -22,6 +22,9 @@ std::vector<Drive> drives(const Scene& scene);
 /// Largest difference between the pressures of boundaries, or across periodic sides [Pa].
 double largest_pressure(const Scene& scene);
 
+/// Mean speed of a flow that is held through an opening [m/s]; 0 without one.
+double opening_speed(const Scene& scene, const BoundaryScene& opening);
+
 /// Mean speed of a flow that is held over the cross-section of the box [m/s]; 0 without one.
 double mean_speed(const Scene& scene);
 

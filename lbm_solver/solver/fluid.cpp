@@ -33,6 +33,10 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
     p.force_x = p.force_y = p.force_z = 0.0;
     medium_.parameters = p;
   }
+  if (choice.eddies == EddyModel::Wale && choice.parameters.smagorinsky > 0.0) {
+    wale_ = std::make_unique<Wale>(*ranks_);
+    medium_.eddies = &wale_->field();
+  }
   if (lattice().D != domain().dimension())
     throw std::invalid_argument(std::string(lattice().name) + " for a box of " +
                                 std::to_string(domain().dimension()) + " dimensions");
@@ -56,6 +60,11 @@ void Fluid::vary_body_force(const InTime& in_time) {
 void Fluid::hold_flow(const FlowControl& control) {
   BPLBM_EXPECT(choice_.force);
   flow_ = control;
+}
+
+void Fluid::hold_flow(const PressureControl& control) {
+  BPLBM_EXPECT(dynamic_cast<PressurePatch*>(patches_.at(control.patch()).get()));
+  pressure_ = control;
 }
 
 void Fluid::set_body_force(const Vec3& force) {
@@ -155,15 +164,15 @@ void Fluid::sweep_and_exchange(EsotericPull& stream) {
     Rows low = inner, high = inner;
     (first == 2 ? low.z_end : low.y_end) = begin + 1;
     (first == 2 ? high.z_begin : high.y_begin) = end - 1;
-    kernel_->sweep(f_, stream, cover_.get(), low);
-    kernel_->sweep(f_, stream, cover_.get(), high);
+    kernel_->sweep(f_, stream, cover_.get(), eddies(), low);
+    kernel_->sweep(f_, stream, cover_.get(), eddies(), high);
     ++begin;
     --end;
 #pragma omp barrier
 #pragma omp master
     halo_->begin(first, f_, stream);
   }
-  kernel_->sweep(f_, stream, cover_.get(), inner);
+  kernel_->sweep(f_, stream, cover_.get(), eddies(), inner);
 #pragma omp barrier
 #pragma omp master
   {
@@ -202,7 +211,10 @@ void Fluid::advance(std::int64_t steps, const AfterStep& after_each) {
 void Fluid::make_steps(std::int64_t steps, const AfterStep& after_each) {
   while (steps > 0) {
     const bool changes = force_in_time_.changes_after(steps_);
-    const std::int64_t now = changes ? 1 : steps, made = flow_ ? adjust_flow(now) : now;
+    std::int64_t made = changes ? 1 : steps;
+    if (flow_) made = adjust_flow(made);
+    if (pressure_) made = adjust_pressure(made);
+    if (wale_) made = adjust_eddies(made);
     make_steps_under_force(made, after_each);
     if (changes) set_body_force();
     steps -= made;
@@ -217,6 +229,24 @@ std::int64_t Fluid::adjust_flow(std::int64_t steps) {
     set_body_force();
   }
   return std::min(steps, flow_->until_next(steps_));
+}
+
+/// Finds the pressure that holds the flow through an opening, where it is time. @return likewise
+std::int64_t Fluid::adjust_pressure(std::int64_t steps) {
+  if (pressure_->due(steps_)) {
+    Patch& patch = *patches_[pressure_->patch()];
+    double mass_in = patch.mass_in();
+    ranks_->sum({&mass_in, 1});
+    pressure_->adjust(steps_, mass_in);
+    static_cast<PressurePatch&>(patch).hold(pressure_->drho());
+  }
+  return std::min(steps, pressure_->until_next(steps_));
+}
+
+/// Finds the eddy viscosity's factors, where it is time. @return likewise
+std::int64_t Fluid::adjust_eddies(std::int64_t steps) {
+  if (wale_->due(steps_)) wale_->update(*this);
+  return std::min(steps, wale_->until_next(steps_));
 }
 
 /// A step is three operators, each called by every thread of one parallel region.
@@ -250,7 +280,7 @@ void Fluid::stream_and_collide(EsotericPull& stream, bool barrier) {
   if (halo_)
     sweep_and_exchange(stream);
   else
-    kernel_->sweep(f_, stream, cover_.get(), Rows::all(f_));
+    kernel_->sweep(f_, stream, cover_.get(), eddies(), Rows::all(f_));
   stream.advance();
   if (!halo_ && barrier) {
 #pragma omp barrier

@@ -15,7 +15,9 @@
 #include "lbm_solver/immersed/two_step_loads.h"
 #include "lbm_solver/solver/flow_control.h"
 #include "lbm_solver/solver/kernel.h"
+#include "lbm_solver/solver/pressure_control.h"
 #include "lbm_solver/solver/row_moments.h"
+#include "lbm_solver/solver/wale.h"
 
 namespace lbm {
 
@@ -80,8 +82,13 @@ class Fluid {
   void vary_body_force(const InTime& in_time);
   /// A further body force along an axis holds a flow. The kernel's choice must have one.
   void hold_flow(const FlowControl& control);
-  /// Null where no flow is held.
+  /// The pressure of a pressure patch that was added holds a flow through it.
+  void hold_flow(const PressureControl& control);
+  /// Null where no flow is held in this way.
   const FlowControl* flow_control() const { return flow_ ? &*flow_ : nullptr; }
+  const PressureControl* pressure_control() const { return pressure_ ? &*pressure_ : nullptr; }
+  /// Null: the eddy viscosity is Smagorinsky's everywhere, or there is none.
+  const EddyField* eddies() const { return medium_.eddies; }
   /// Another one from the coming step on. The kernel's choice must have one.
   void set_body_force(const Vec3& force);
   /// On a cell in the coming step.
@@ -172,6 +179,8 @@ class Fluid {
   void make_steps_under_force(std::int64_t steps, const AfterStep& after_each);
   void set_body_force();
   std::int64_t adjust_flow(std::int64_t steps);
+  std::int64_t adjust_pressure(std::int64_t steps);
+  std::int64_t adjust_eddies(std::int64_t steps);
   void remember_loads();
   Record save_boundary(std::size_t number) const;
   void load_boundary(std::size_t number, const Record& record);
@@ -186,6 +195,8 @@ class Fluid {
   std::unique_ptr<Kernel> kernel_;
   InTime force_in_time_;
   std::optional<FlowControl> flow_;
+  std::optional<PressureControl> pressure_;
+  std::unique_ptr<Wale> wale_;
   std::unique_ptr<HaloExchange> halo_;
   std::unique_ptr<CoverMap> cover_;
   RowMedium medium_;

@@ -52,6 +52,8 @@ Record Fluid::save() const {
     record.set("boundary" + std::to_string(i + 1), save_boundary(i));
   if (scheme_) record.set("scheme", scheme_->save());
   if (flow_) record.set("flow", flow_->save());
+  if (pressure_) record.set("pressure", pressure_->save());
+  if (wale_) record.set("eddies", wale_->save());
   if (two_steps_.on()) {
     TwoStepLoads last = two_steps_;
     if (loads_are_new_) last.remember(bodies_, cover_->loads());
@@ -70,6 +72,11 @@ void Fluid::load(const Record& record) {
     load_boundary(i, record.part("boundary" + std::to_string(i + 1)));
   if (scheme_) scheme_->load(record.part("scheme"));
   if (flow_) flow_->load(record.part("flow"));
+  if (pressure_) {
+    pressure_->load(record.part("pressure"));
+    static_cast<PressurePatch&>(*patches_[pressure_->patch()]).hold(pressure_->drho());
+  }
+  if (wale_) wale_->load(record.part("eddies"));
   if (two_steps_.on()) {
     two_steps_.load(record.part("loads"));
     if (!fixed_.empty()) fixed_two_steps_.load(record.part("fixed_loads"));

@@ -10,6 +10,7 @@
 #include "lbm_solver/field/esoteric_pull.h"
 #include "lbm_solver/immersed/cover_map.h"
 #include "lbm_solver/immersed/weight.h"
+#include "lbm_solver/viscosity/eddy_field.h"
 
 namespace lbm {
 
@@ -31,8 +32,9 @@ class Kernel {
   virtual ~Kernel() = default;
   /// Called by every thread of a parallel region, each for its share of the rows; returns without
   /// waiting for the others. @param cover  covered cells; null where the scene has no solids
+  /// @param eddies  null: the eddy viscosity is Smagorinsky's everywhere
   virtual void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover,
-                     const Rows& rows) const = 0;
+                     const EddyField* eddies, const Rows& rows) const = 0;
 };
 
 /// What a scene asks of the kernel; a row of the kernel table.
@@ -44,6 +46,7 @@ struct KernelChoice {
   WeightRule weight = WeightRule::Viscous;
   std::string lattice = "D2Q9";  ///< one of known_lattices()
   Precision precision = Precision::Double;
+  EddyModel eddies = EddyModel::Smagorinsky;
 
   /// The viscosity depends on the shear rate of a cell: by its table, or by Smagorinsky's model.
   bool local_viscosity() const {

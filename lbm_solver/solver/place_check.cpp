@@ -158,6 +158,22 @@ void check_boundaries(const Scene& s) {
     }
 }
 
+/// One pressure can be found at a time, and a flow that it drives must get out elsewhere.
+void check_held_openings(const Scene& s) {
+  const auto holds = [](const BoundaryScene& b) { return b.flow_rate.has_value(); };
+  if (std::ranges::none_of(s.boundaries, holds)) return;
+  const std::string key = s.file + ": boundary.flow_rate";
+  if (std::ranges::count_if(s.boundaries, holds) > 1)
+    throw InputError(key, "stands at more than one boundary, and one pressure is found at a time",
+                     "give the others a pressure, or a velocity whose flow is known");
+  if (s.fluid.flow) throw InputError(key, "stands beside fluid.flow_rate", "leave one of them out");
+  if (std::ranges::none_of(s.boundaries, [](const BoundaryScene& b) {
+        return b.kind != BoundaryScene::Kind::Velocity && !b.flow_rate;
+      }))
+    throw InputError(key, "has no other opening with a pressure, through which the flow gets out",
+                     "add a boundary of kind \"pressure\" or \"outflow\"");
+}
+
 /// The body force is free to give a flow where nothing else drives it, or holds it.
 void check_flow(const Scene& s) {
   if (!s.fluid.flow) return;
@@ -222,6 +238,7 @@ Range extent(const Scene& s, const BoundaryScene& b, int k) {
 void check_places(const Scene& s) {
   check_carried_weight(s);
   check_flow(s);
+  check_held_openings(s);
   if (s.particles) {
     check_particles(s);
     check_starts(s);

@@ -303,6 +303,7 @@ void choose_kernel(const Scene& s, Plan& plan) {
         "take central_moment, or precision = \"double\"");
   k.force =
       s.fluid.body_force.norm() > 0.0 || s.fluid.flow || (s.coupling && s.coupling->carry_weight);
+  if (n.wale) k.eddies = EddyModel::Wale;
   choose_solids(s, plan);
   const Vec3 force = s.fluid.body_force * (dt * dt / dx);
   k.parameters = {.tau = 0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),

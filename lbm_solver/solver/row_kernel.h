@@ -92,16 +92,16 @@ class RowKernel final : public Kernel {
       throw std::invalid_argument("solid term '" + c.solid_term + "' needs the collision trt");
   }
 
-  void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover,
+  void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover, const EddyField* eddies,
              const Rows& rows) const override {
     const int count = rows.size();
     const std::ptrdiff_t to_next_row = f.beyond_caches() ? f.stride() : 0;
 #pragma omp for schedule(static) nowait
     for (int r = 0; r < count; ++r) {
       const auto [y, z] = rows[r];
-      const Row row = stream.open<L, Real>(f, y, z);
+      const CellRow row{stream.open<L, Real>(f, y, z), eddies ? eddies->row(y, z) : nullptr};
       const std::ptrdiff_t ahead = r + 1 < count ? to_next_row : 0;
-      RowPrefetch<L, Real> prefetch(row, f.nx(), ahead);
+      RowPrefetch<L, Real> prefetch(row.populations, f.nx(), ahead);
       if (const int first = cover ? cover->next_covered(y, z, 0) : f.nx();
           first * kPackWidth >= f.nx())
         sweep_run(row, 0, f.nx(), prefetch);
@@ -113,9 +113,14 @@ class RowKernel final : public Kernel {
 
  private:
   using Prefetch = RowPrefetch<L, Real>;
+  struct CellRow {
+    Row populations;
+    const float* eddies;  ///< of an EddyField; null: none
+  };
 
   /// Pure fluid from cell x to cell end.
-  [[gnu::always_inline]] void sweep_run(const Row& row, int x, int end, Prefetch& shared) const {
+  [[gnu::always_inline]] void sweep_run(const CellRow& row, int x, int end,
+                                        Prefetch& shared) const {
     Prefetch prefetch = shared;  // in registers
     for (; x + kWidth <= end; x += kWidth) {
       if constexpr (L::D == 3) prefetch.fetch(L::Q + 3);
@@ -127,7 +132,7 @@ class RowKernel final : public Kernel {
 
   /// Runs of pure fluid between the covered blocks: inside a run nothing is asked about solids.
   /// @param next  the first covered block
-  [[gnu::noinline]] void sweep_row_with_solids(const Row& row, int y, int z, int n, int next,
+  [[gnu::noinline]] void sweep_row_with_solids(const CellRow& row, int y, int z, int n, int next,
                                                CoverMap& cover, Prefetch& prefetch) const {
     const int blocks = cover.blocks_per_row();
     CoverPrefetch ahead(cover.row(y, z));
@@ -147,15 +152,18 @@ class RowKernel final : public Kernel {
   }
 
   template <class Access>
-  [[gnu::always_inline]] void fluid(const Row& row, int x, const Access& lanes) const {
-    V f[L::Q];
-    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
-    collide_(f);
-    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
+  [[gnu::always_inline]] void fluid(const CellRow& row, int x, const Access& lanes) const {
+    const Row& at = row.populations;
+    V f[L::Q], eddies(1.0);
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(at.in[q] + x); });
+    if constexpr (Collision::local_viscosity)
+      if (row.eddies) eddies = lanes.load(row.eddies + x);
+    collide_(f, eddies);
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(at.out[q] + x, f[q]); });
   }
 
   template <class Access>
-  [[gnu::always_inline]] void covered(const Row& row, int x, const CoverMap& cover,
+  [[gnu::always_inline]] void covered(const CellRow& row, int x, const CoverMap& cover,
                                       CoverBlock& block, const Access& lanes) const {
     if constexpr (Collision::fixed_magic)
       if (resistance_) return covered(*resistance_, row, x, cover, block, lanes);
@@ -163,7 +171,7 @@ class RowKernel final : public Kernel {
   }
 
   template <class SolidCollision, class Access>
-  [[gnu::noinline]] void covered(const SolidCollision& solid, const Row& row, int x,
+  [[gnu::noinline]] void covered(const SolidCollision& solid, const CellRow& row, int x,
                                  const CoverMap& cover, CoverBlock& block,
                                  const Access& lanes) const {
     CoveredCell<L> cell;
@@ -178,10 +186,13 @@ class RowKernel final : public Kernel {
       cell.cover = load<Pack>(block.cover.data());
       velocity_in<L::D>(block, cover.motion(block), cell.us.at);
     }
+    const Row& at = row.populations;
     Pack f[L::Q];
-    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(row.in[q] + x); });
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(at.in[q] + x); });
+    if constexpr (Collision::local_viscosity)
+      if (row.eddies) cell.eddies = lanes.load(row.eddies + x);
     const Vector<L, Pack> force = solid.template apply<L>(f, collide_, cell);
-    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(row.out[q] + x, f[q]); });
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(at.out[q] + x, f[q]); });
     if (shared) [[unlikely]]
       cover.split<L::D>(block, scale, force.at);
     else

@@ -23,13 +23,16 @@ class MomentsOfRow {
                   const RowVelocity& u, std::span<double> solid) const {
     const auto row = stream.open<L, Real>(f, y, z);  // makes the ends ready; may be repeated
     CoverBlock* const* blocks = medium_.cover ? medium_.cover->row(y, z) : nullptr;
+    const float* const eddies = medium_.eddies ? medium_.eddies->row(y, z) : nullptr;
     const auto cells = [&](int x, const auto& lanes) {
       Pack g[L::Q];
       unroll<L::Q>([&](auto q) { g[q] = lanes.load(row.in[q] + x); });
       const Moments<L, Pack> m = moments<L>(g);
       Vector<L, Pack> mean = velocity<L>(m, force_);
       Pack share(0.0);
-      if (blocks && blocks[x / kPackWidth]) share = mix(g, m, *blocks[x / kPackWidth], mean);
+      if (blocks && blocks[x / kPackWidth])
+        share =
+            mix(g, m, *blocks[x / kPackWidth], eddies ? lanes.load(eddies + x) : Pack(1.0), mean);
       lanes.store(&rho[x], m.drho + Pack(1.0));
       lanes.store(&solid[x], share);
       for (int a = 0; a < L::D; ++a) lanes.store(&u[a][x], mean[a]);
@@ -42,11 +45,11 @@ class MomentsOfRow {
  private:
   /// Mixes the solid's velocity into that of the cells of a covered block. @return its share
   Pack mix(const Pack (&g)[L::Q], const Moments<L, Pack>& m, const CoverBlock& block,
-           Vector<L, Pack>& mean) const {
+           const Pack& eddies, Vector<L, Pack>& mean) const {
     const auto solid = medium_.cover->merge<L::D>(block);
     Pack tau(medium_.parameters.tau);
     if (medium_.local_viscosity)
-      tau = local_tau<L>(g, m, Pack(1.0) - fraction_of(solid.cover), viscosity_, force_);
+      tau = local_tau<L>(g, m, Pack(1.0) - fraction_of(solid.cover), eddies, viscosity_, force_);
     Pack share = medium_.share.of<L>(solid.cover, tau);
     where(solid.cover == Pack(0.0), share) = Pack(0.0);
     for (int a = 0; a < L::D; ++a)  // what is not finite stays so: 0 times it is not 0

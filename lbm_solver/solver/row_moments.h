@@ -8,6 +8,7 @@
 #include "lbm_solver/field/esoteric_pull.h"
 #include "lbm_solver/immersed/cover_map.h"
 #include "lbm_solver/immersed/solid_share.h"
+#include "lbm_solver/viscosity/eddy_field.h"
 
 namespace lbm {
 
@@ -16,10 +17,11 @@ using RowVelocity = std::array<std::span<double>, 3>;
 
 /// What the moments of a row depend on beside the populations.
 struct RowMedium {
-  CollisionParameters parameters;   ///< half of the body force belongs to the momentum
-  bool local_viscosity = false;     ///< the relaxation time depends on the shear rate
-  const CoverMap* cover = nullptr;  ///< covered cells; null: none
-  SolidShare share;                 ///< of the solids in their velocity
+  CollisionParameters parameters;     ///< half of the body force belongs to the momentum
+  bool local_viscosity = false;       ///< the relaxation time depends on the shear rate
+  const CoverMap* cover = nullptr;    ///< covered cells; null: none
+  SolidShare share;                   ///< of the solids in their velocity
+  const EddyField* eddies = nullptr;  ///< null: none
 };
 
 /// Density of a row of what has arrived, and its velocity, in covered cells (1-B) u + B u_s.

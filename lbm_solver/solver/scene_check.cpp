@@ -36,8 +36,10 @@ std::pair<double, std::string> given_speed(const Scene& s) {
   const auto look = [&](double speed, const std::string& what) {
     if (speed > largest.first) largest = {speed, what};
   };
-  for (const BoundaryScene& b : s.boundaries)
+  for (const BoundaryScene& b : s.boundaries) {
     look(b.velocity.norm() * b.table.largest() * b.profile.largest(), "boundary.velocity");
+    look(opening_speed(s, b), "boundary.flow_rate");
+  }
   for (const ObstacleScene& o : s.obstacles) {
     look(0.5 * o.diameter * o.spin.norm(), "an obstacle's spin");
     if (o.motion) look(largest_speed(*o.motion, reach_of(o), s.end_time), "an obstacle's motion");

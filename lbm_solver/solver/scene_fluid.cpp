@@ -76,7 +76,8 @@ void add_boundary(const Scene& s, const Plan& p, const BoundaryScene& b, Fluid& 
   }
   const double drho = b.pressure / p.units.pressure();
   if (b.kind == BoundaryScene::Kind::Pressure) {
-    fluid.add(std::make_unique<PressurePatch>(fluid.links(o), b.side, drho, value));
+    const InTime held = b.flow_rate ? InTime{} : value;  // in time the flow changes
+    fluid.add(std::make_unique<PressurePatch>(fluid.links(o), b.side, drho, held));
     return;
   }
   const double length = std::max({p.domain.nx, p.domain.ny, p.domain.nz});
@@ -98,6 +99,21 @@ FlowControl flow_control(const Scene& s, const Plan& p) {
   const FlowScene& flow = *s.fluid.flow;
   const double speed = std::copysign(mean_speed(s), flow.rate) / p.units.velocity();
   return {flow.axis, speed, {.ramp_steps = flow.ramp / p.units.dt}, p.domain.cells()[flow.axis]};
+}
+
+/// Of the boundary that has one.
+std::optional<PressureControl> pressure_control(const Scene& s, const Plan& p) {
+  for (std::size_t i = 0; i < s.boundaries.size(); ++i) {
+    const BoundaryScene& b = s.boundaries[i];
+    if (!b.flow_rate) continue;
+    const Opening o = opening(s, p, b);
+    const double area = (o.end[0] - o.begin[0]) * (o.end[1] - o.begin[1]);
+    const double face = s.box.dimension == 2 ? p.units.dx * s.box.depth : p.units.dx * p.units.dx;
+    const double flow = *b.flow_rate / (face * p.units.velocity());
+    return PressureControl(i, flow, in_time(p, b.ramp, b.frequency, b.table), area,
+                           p.domain.cells()[axis_of(b.side)], b.pressure / p.units.pressure());
+  }
+  return {};
 }
 
 CellBox cells_of(const Scene& s, const Plan& p, const ObstacleScene& o) {
@@ -283,6 +299,7 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
       in_time(p, s.fluid.body_force_ramp, s.fluid.body_force_frequency, s.fluid.body_force_table);
   if (force.changes_after(0)) fluid.vary_body_force(force);
   if (s.fluid.flow) fluid.hold_flow(flow_control(s, p));
+  if (const auto control = pressure_control(s, p)) fluid.hold_flow(*control);
   if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
   const bool moving =
       p.kernel.solid_term != "none" &&

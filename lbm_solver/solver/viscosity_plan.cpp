@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/viscosity/mean_law.h"
 #include "lbm_solver/viscosity/relaxation_table.h"
 #include "lbm_solver/viscosity/viscosity_law.h"
 
@@ -81,6 +82,14 @@ void check_bounds(const Scene& s, const ViscosityLaw& law, Plan& plan) {
                       rate, bound));
 }
 
+/// Radius of the smallest round body [cells]; 0: there is none.
+double smallest_radius(const Scene& s, double dx) {
+  double diameter = s.particles ? s.particles->diameter.lo : 0.0;
+  for (const ObstacleScene& o : s.obstacles)
+    if (o.round && (diameter == 0.0 || o.diameter < diameter)) diameter = o.diameter;
+  return 0.5 * diameter / dx;
+}
+
 }  // namespace
 
 void plan_viscosity(const Scene& s, Plan& plan) {
@@ -95,7 +104,11 @@ void plan_viscosity(const Scene& s, Plan& plan) {
   const double eddies = 3.0 * std::pow(s.numerics.smagorinsky, 2);  // (S_c h)² γ̇, h a cell
   const auto tau = [=](double rate) { return 0.5 + to_tau * law(rate / dt) + eddies * rate; };
   try {
-    plan.kernel.parameters.viscosity_table = std::make_shared<RelaxationTable>(tau);
+    CollisionParameters& p = plan.kernel.parameters;
+    p.viscosity_table = std::make_shared<RelaxationTable>(tau);
+    if (const double radius = smallest_radius(s, plan.units.dx); radius > 0.0)
+      p.covered_table = std::make_shared<RelaxationTable>(
+          MeanLaw(tau, MeanLaw::spread_beside(radius, s.box.dimension)));
   } catch (const std::invalid_argument& error) {
     throw InputError(s.file + ": fluid.viscosity", error.what(), "check its numbers");
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lbm_solver/viscosity/local_viscosity.h"
+
 namespace lbm {
 namespace {
 
@@ -33,15 +35,16 @@ double stress_of(const Fluid& fluid, int x, int y, int z, Trace with = Trace::Ta
   return 2.0 * squares / (rho * rho);
 }
 
-constexpr double kLeastFluid = 0.05;  // as in LocalViscosity
-
 /// As LocalViscosity finds it, of a cell that is open in part.
 double tau_of(const Fluid& fluid, const CollisionParameters& p, double open, int x, int y, int z) {
   if (p.viscosity_table) {
-    const double part = kLeastFluid + (1.0 - kLeastFluid) * open;
-    return 1.0 / (*p.viscosity_table)(stress_of(fluid, x, y, z) / (part * part));
+    const bool covered = open < 1.0;
+    const double part = covered ? LocalViscosity::stress_part(open) : 1.0;
+    const auto& table = covered && p.covered_table ? p.covered_table : p.viscosity_table;
+    return 1.0 / (*table)(stress_of(fluid, x, y, z) / (part * part));
   }
-  const double eddies = 18.0 * p.smagorinsky * p.smagorinsky;
+  const double factor = fluid.eddies() ? fluid.eddies()->row(y, z)[x] : 1.0;
+  const double eddies = 18.0 * p.smagorinsky * p.smagorinsky * factor;
   const double stress = std::sqrt(stress_of(fluid, x, y, z, Trace::Left));
   return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + eddies * stress));
 }

@@ -13,11 +13,11 @@ class ConstantViscosity {
   static constexpr bool local = false;
   explicit ConstantViscosity(const CollisionParameters& p) : tau_(p.tau) {}
   template <class L, class V>
-  [[gnu::always_inline]] V tau(const Symmetric<L, V>&, const V&) const {
+  [[gnu::always_inline]] V tau(const Symmetric<L, V>&, const V&, const V&, const V&) const {
     return V(tau_);
   }
   template <class L, class V>
-  [[gnu::always_inline]] V rate(const Symmetric<L, V>&, const V&) const {
+  [[gnu::always_inline]] V rate(const Symmetric<L, V>&, const V&, const V&) const {
     return V(1.0) / V(tau_);
   }
 

@@ -104,4 +104,68 @@ TEST(FlowControl, DoesNotDependOnHowStepsAreAsked) {
   EXPECT_EQ(many.save(), single.save());
 }
 
+/// A channel along x between two openings, the left one of which holds a flow into the box.
+Fluid open_channel(double tau, double speed, int length, const InTime& in_time = {}) {
+  Fluid fluid({length, kHeight, Side::Wall, Side::Wall}, {.parameters = {.tau = tau}});
+  for (const SideName side : {SideName::Left, SideName::Right}) {
+    const Opening whole = Opening::whole(fluid.domain(), side);
+    fluid.add(std::make_unique<PressurePatch>(fluid.links(whole), side, 0.0, InTime{}));
+  }
+  fluid.hold_flow(PressureControl(0, speed * kHeight, in_time, kHeight, length, 0.0));
+  return fluid;
+}
+
+// p = 12 ν U L/H², to which the openings add what it takes to bend a uniform inflow: 1 % of it is
+// some hundredths of a cell's height of channel.
+TEST(PressureControl, FindsThePressureOfAChannel) {
+  constexpr double tau = 0.9, nu = (tau - 0.5) / 3.0, speed = 0.004;
+  constexpr int length = 96;
+  Fluid fluid = open_channel(tau, speed, length);
+  fluid.advance(40000);
+  const PressureControl& control = *fluid.pressure_control();
+  EXPECT_NEAR(control.flow() / (speed * kHeight), 1.0, 1e-6);
+  const double pressure = 12.0 * nu * speed * length / (kHeight * kHeight);
+  EXPECT_NEAR(control.drho() / 3.0 / pressure, 1.0, 0.02);
+}
+
+// Twice the impedance of the open channel is its resistance here, a hundred times in a block of
+// discs that nearly touch: neither swings, both come to the flow. Without resistance (a short, wide
+// channel of a thin fluid) the inertia does not swing either.
+TEST(PressureControl, ComesToTheFlowAgainstAnyResistance) {
+  constexpr double speed = 1e-3;
+  for (const double radius : {0.0, 7.3}) {
+    const int length = 64;
+    Fluid fluid(
+        {length, kHeight, Side::Wall, Side::Wall},
+        {.solid_term = "resistance", .parameters = {.tau = 0.8, .magic = kResistanceMagic}});
+    for (const SideName side : {SideName::Left, SideName::Right}) {
+      const Opening whole = Opening::whole(fluid.domain(), side);
+      fluid.add(std::make_unique<PressurePatch>(fluid.links(whole), side, 0.0, InTime{}));
+    }
+    std::vector<Body> discs;
+    for (int k = 0; k < 4 && radius > 0.0; ++k)
+      discs.push_back({k + 1, {24.0 + 16.0 * (k % 2), 8.0 + 16.0 * (k / 2), 0.0}, radius});
+    fluid.place(discs);
+    fluid.hold_flow(PressureControl(0, speed * kHeight, {}, kHeight, length, 0.0));
+    double most = 0.0;
+    for (int look = 0; look < 400; ++look) {
+      fluid.advance(100);
+      most = std::max(most, fluid.pressure_control()->flow());
+    }
+    EXPECT_NEAR(fluid.pressure_control()->flow() / (speed * kHeight), 1.0, 1e-4) << radius;
+    EXPECT_LT(most / (speed * kHeight), 1.3) << radius;
+    RecordProperty("drho" + std::to_string(radius > 0.0),
+                   std::to_string(fluid.pressure_control()->drho()));
+  }
+}
+
+TEST(PressureControl, GoesOnToTheBit) {
+  Fluid first = open_channel(0.7, 0.01, 40), second = open_channel(0.7, 0.01, 40);
+  first.advance(101);
+  second.load(first.save());
+  first.advance(57);
+  second.advance(57);
+  EXPECT_TRUE(first.save() == second.save());
+}
+
 }  // namespace

@@ -7,61 +7,15 @@
 
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/viscosity_use.h"
-#include "lbm_solver/viscosity/viscosity_law.h"
+#include "tests/support/gels.h"
 #include "tests/support/openings.h"
 
 namespace {
 
 using namespace lbm;
 using std::numbers::pi;
+using test::Gel, test::parameters, test::parameters_beside, test::settled;
 using Regularisation = ViscosityScene::Regularisation;
-
-/// A Herschel–Bulkley fluid in lattice units, density 1; nu_w is its viscosity at a shear rate of
-/// the flow.
-struct Gel {
-  double index = 1.0, yield_part = 0.0;  ///< σ_y over the stress at that shear rate
-  double span = 100.0;                   ///< nu_max over nu_w
-  double thinnest = 1e-2;                ///< nu_min over nu_w
-  Regularisation regularisation = Regularisation::BiViscosity;
-
-  ViscosityLaw law(double tau, double shear_rate) const {
-    const double nu = (tau - 0.5) / 3.0, stress = nu * shear_rate;
-    FluidScene fluid{.density = 1.0};
-    fluid.law = {.model = ViscosityScene::Model::HerschelBulkley,
-                 .consistency = (1.0 - yield_part) * stress / std::pow(shear_rate, index),
-                 .index = index,
-                 .yield_stress = yield_part * stress,
-                 .nu_min = nu * thinnest,
-                 .nu_max = nu * span,
-                 .regularisation = regularisation};
-    return {fluid, shear_rate};
-  }
-  /// Shear rate of the fluid without bounds at a stress, in units of those it was made for.
-  double shear_rate(double stress) const {
-    return stress > yield_part ? std::pow((stress - yield_part) / (1.0 - yield_part), 1.0 / index)
-                               : 0.0;
-  }
-};
-
-CollisionParameters parameters(const ViscosityLaw& law, double tau, double force = 0.0) {
-  CollisionParameters p{.tau = tau, .force_x = force};
-  p.viscosity_table =
-      std::make_shared<RelaxationTable>([law](double rate) { return 0.5 + 3.0 * law(rate); });
-  return p;
-}
-
-/// Runs until a number changes by less than 1e-7 in 1000 steps; at most `most` steps.
-template <class Number>
-double settled(Fluid& fluid, int most, const Number& number) {
-  double before = number();
-  for (int step = 0; step < most; step += 1000) {
-    fluid.advance(1000);
-    const double now = number();
-    if (std::abs(now - before) < 1e-7 * std::abs(now)) return now;
-    before = now;
-  }
-  return before;
-}
 
 struct Channel {
   double error;     ///< of the flow rate
@@ -171,8 +125,9 @@ double taylor_couette(double index, double inner, double outer) {
   const int size = 2 * static_cast<int>(std::ceil(outer)) + 6;
   const double surface_rate = 0.0015, nu = (tau - 0.5) / 3.0;  // at the inner cylinder
   const Gel gel{.index = index};
-  Fluid fluid({size, size}, {.solid_term = "resistance",
-                             .parameters = parameters(gel.law(tau, surface_rate), tau)});
+  Fluid fluid({size, size},
+              {.solid_term = "resistance",
+               .parameters = parameters_beside(inner, 2, gel.law(tau, surface_rate), tau)});
   const double exact = 2.0 * pi * inner * inner * nu * surface_rate;
   const double spin = surface_rate * 0.5 * index * (1.0 - std::pow(inner / outer, 2.0 / index));
   const Vec3 centre(0.5 * size + 0.137, 0.5 * size - 0.211);
@@ -192,9 +147,10 @@ double sphere_drag(double index, double radius) {
   constexpr double tau = 1.0;
   const int size = 2 * static_cast<int>(std::ceil(4.0 * radius)) + 4;
   const double speed = 5e-4, rate = speed / (2.0 * radius), nu = (tau - 0.5) / 3.0;
-  KernelChoice choice{.solid_term = "layered_resistance",
-                      .parameters = parameters(Gel{.index = index}.law(tau, rate), tau),
-                      .lattice = "D3Q19"};
+  KernelChoice choice{
+      .solid_term = "layered_resistance",
+      .parameters = parameters_beside(radius, 3, Gel{.index = index}.law(tau, rate), tau),
+      .lattice = "D3Q19"};
   choice.parameters.magic = kResistanceMagic;
   Fluid fluid({size, size, Side::Wall, Side::Wall, size, Side::Wall}, choice);
   const Vec3 centre(0.5 * size + 0.137, 0.5 * size - 0.211, 0.5 * size + 0.31);
@@ -215,61 +171,6 @@ TEST(Sphere, Slow_DragInPowerLawFluids) {
       {1.5, 2.4844}, {1.0, 2.1049}, {0.8, 1.9501}, {0.3, 1.5421}};
   for (const auto& [index, exact] : cases)
     EXPECT_NEAR(sphere_drag(index, 5.0) / exact, 1.0, 0.05) << "n = " << index;
-}
-
-/// Load on a body over what it would weigh if the yield stress just held it, σ_y/(Δρ g D): the
-/// critical yield number, from a body that creeps through a Bingham fluid 1600 times as stiff as
-/// its plastic viscosity alone.
-double critical_yield_number(int dimension, double diameter, int box) {
-  constexpr double tau = 3.0, speed = 1e-3, bingham = 1600.0;
-  const Gel gel{.yield_part = bingham / (1.0 + bingham), .span = 30.0, .thinnest = 1e-4};
-  const bool flat = dimension == 2;
-  KernelChoice choice{.solid_term = "layered_resistance",
-                      .parameters = parameters(gel.law(tau, speed / diameter), tau),
-                      .lattice = flat ? "D2Q9" : "D3Q19"};
-  choice.parameters.magic = kResistanceMagic;
-  Fluid fluid(flat ? Domain{box, box, Side::Wall, Side::Wall}
-                   : Domain{box, box, Side::Wall, Side::Wall, box, Side::Wall},
-              choice);
-  const double middle = box / 2;
-  fluid.place(std::vector<Body>{{1,
-                                 {middle + 0.137, middle - 0.211, flat ? 0.0 : middle + 0.31},
-                                 0.5 * diameter,
-                                 {speed, 0.0, 0.0}}});
-  fluid.advance(2500);
-  const double yield = gel.yield_part * (tau - 0.5) / 3.0 * speed / diameter;
-  const double load = -fluid.loads()[0].force.x() / (yield * std::pow(diameter, dimension - 1));
-  return (flat ? pi / 4.0 : pi / 6.0) / load;
-}
-
-// The layer that yields beside the body becomes thinner than a cell, which the lattice makes
-// stiffer than it is: a disc of 20 cells bears 5 % more load, a sphere of 10, 20, 28 and 40 cells
-// 18, 11, 9 and 7 % more.
-TEST(YieldNumber, OfADiscIsThatOfPlasticityTheory) {
-  // F = (4 √2 + 2 π) σ_y D on a rough disc [RandolphHoulsby1984]
-  EXPECT_NEAR(critical_yield_number(2, 20.0, 100) / (pi / 4.0 / (4.0 * std::sqrt(2.0) + 2.0 * pi)),
-              1.0, 0.1);
-}
-
-TEST(YieldNumber, OfASphereIsThatOfBeris) {
-  // 2 π R² σ_y/F = 0.143 [Beris1985], 3 σ_y/(Δρ g D)
-  EXPECT_NEAR(critical_yield_number(3, 28.0, 64) / (0.143 / 3.0), 1.0, 0.1);
-}
-
-// Nothing yields: the whole channel is a Newtonian fluid with nu_max, from rest on.
-TEST(YieldStress, HoldsAChannelButForItsCreep) {
-  constexpr int n = 16;
-  constexpr double tau = 0.8, rate = 1e-3;
-  const Gel gel{.yield_part = 0.5, .span = 50.0};
-  const double nu_max = 50.0 * (tau - 0.5) / 3.0, yield = 0.5 * (tau - 0.5) / 3.0 * rate;
-  const double force = 0.8 * yield / (0.5 * n);
-  Fluid fluid({8, n, Side::Periodic, Side::Wall},
-              {.force = true, .parameters = parameters(gel.law(tau, rate), tau, force)});
-  fluid.advance(4000);
-  for (int y = 0; y < n; ++y)
-    EXPECT_NEAR(fluid.cell(3, y).u.x() / (force * n * n / (8.0 * nu_max)),
-                4.0 * (y + 0.5) * (n - y - 0.5) / (n * n), 1e-3)
-        << y;
 }
 
 // From rest under the whole force at once, with every operator: thin fluids, n = 0.3, a yield

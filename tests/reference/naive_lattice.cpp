@@ -20,7 +20,8 @@ NaiveLattice::NaiveLattice(const Domain& domain, const lbm::KernelChoice& choice
       l_(lbm::lattice(choice.lattice)),
       f_(static_cast<std::size_t>(domain.nx) * domain.ny * domain.nz, Cell{}),
       cover_(f_.size()),
-      force_(f_.size()) {
+      force_(f_.size()),
+      eddies_(f_.size(), 1.0) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b)
       for (int c = 0; c < (l_.D == 3 ? 3 : 1); ++c)
@@ -174,7 +175,7 @@ Cell NaiveLattice::recursive_regularised(double rho, const Vec3& u, const Eigen:
   return out;
 }
 
-double NaiveLattice::tau(const Cell& f, double part) const {
+double NaiveLattice::tau(const Cell& f, double eddies, double part) const {
   const auto& p = choice_.parameters;
   if (!choice_.local_viscosity()) return p.tau;
   const Macroscopic m = macroscopic(f);
@@ -182,19 +183,22 @@ double NaiveLattice::tau(const Cell& f, double part) const {
   Eigen::Matrix3d q = stress(f, equilibrium(m.rho, u), u);
   if (p.viscosity_table) {
     q.topLeftCorner(l_.D, l_.D).diagonal().array() -= q.trace() / l_.D;
-    const double rho = part == 1.0 ? m.rho : m.rho * (0.05 + 0.95 * part);
-    return 1.0 / (*p.viscosity_table)(2.0 * q.squaredNorm() / (rho * rho));
+    if (part == 1.0) return 1.0 / (*p.viscosity_table)(2.0 * q.squaredNorm() / (m.rho * m.rho));
+    const double corner = part < 0.5 ? 1.0 - 0.5 * std::pow(1.0 - 2.0 * part, 2) : 1.0;
+    const double rho = m.rho * std::max(0.01, part * corner);
+    const auto& table = p.covered_table ? *p.covered_table : *p.viscosity_table;
+    return 1.0 / table(2.0 * q.squaredNorm() / (rho * rho));
   }
-  return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + 18.0 * p.smagorinsky * p.smagorinsky *
+  return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + 18.0 * p.smagorinsky * p.smagorinsky * eddies *
                                                       std::sqrt(2.0) * q.norm() / m.rho));
 }
 
-Cell NaiveLattice::fluid(const Cell& f) const {
+Cell NaiveLattice::fluid(const Cell& f, double eddies) const {
   const auto& p = choice_.parameters;
   const Macroscopic m = macroscopic(f);
   const Vec3 u = (m.j + 0.5 * body_force()) / m.rho;
   const Cell eq = equilibrium(m.rho, u), s = choice_.force ? source(u) : Cell{};
-  const double tau = this->tau(f);
+  const double tau = this->tau(f, eddies);
   if (choice_.collision == CollisionOperator::CentralMoment)
     return central_moments(f, m.rho, u, 1.0 / tau);
   if (choice_.collision == CollisionOperator::RecursiveRegularised)
@@ -219,7 +223,7 @@ Cell NaiveLattice::resistance(std::size_t cell) {
   const auto& p = choice_.parameters;
   const Macroscopic m = macroscopic(f);
   const NaiveCover& cover = cover_[cell];
-  const double t = 1.0 - cover.eps, tau = this->tau(f, t), s = tau - 0.5,
+  const double t = 1.0 - cover.eps, tau = this->tau(f, eddies_[cell], t), s = tau - 0.5,
                mu = (2.0 - 16.0 / 3 * p.magic) * t * t * t;
   double share = 0.0;  // of momentum that populations along the axes carry
   for (int i = 1; i < l_.Q; ++i)
@@ -276,11 +280,11 @@ Cell NaiveLattice::collided(std::size_t cell) {
   const NaiveCover& cover = cover_[cell];
   const Cell eq = equilibrium(m.rho, m.j / m.rho);  // without the body force
   const Cell omega_s = cover.eps > 0.0 ? solid_term(f, eq, m.rho, cover) : Cell{};
-  const Cell post = fluid(f);
+  const Cell post = fluid(f, eddies_[cell]);
   double weight = cover.eps;
   if (choice_.weight != lbm::WeightRule::Fraction) {
     const bool les = choice_.local_viscosity();
-    const double s = (les ? tau(f, 1.0 - cover.eps) : choice_.parameters.tau) - 0.5;
+    const double s = (les ? tau(f, eddies_[cell], 1.0 - cover.eps) : choice_.parameters.tau) - 0.5;
     const double c = choice_.weight == lbm::WeightRule::Balanced ? 1.0 - 0.5 * s : 1.0;
     weight = cover.eps * s / ((1.0 - cover.eps) * c + s);
   }

@@ -32,6 +32,8 @@ class NaiveLattice {
   const lbm::Lattice& lattice() const { return l_; }
   Cell& cell(int x, int y, int z = 0) { return f_[index(x, y, z)]; }
   NaiveCover& cover(int x, int y, int z = 0) { return cover_[index(x, y, z)]; }
+  /// Factor of the eddy viscosity in a cell.
+  double& eddies(int x, int y, int z = 0) { return eddies_[index(x, y, z)]; }
   /// Force on the solids in a cell over the last step: B G - B Σ c_i Ω_i^s, the full sum.
   Vec3 force(int x, int y, int z = 0) const { return force_[index(x, y, z)]; }
 
@@ -59,9 +61,9 @@ class NaiveLattice {
                              double omega) const;
   Cell collided(std::size_t cell);
   /// Post-collision populations of pure fluid.
-  Cell fluid(const Cell& f) const;
+  Cell fluid(const Cell& f, double eddies) const;
   /// Relaxation time of the local viscosity. @param part  of the cell that is fluid, for a table
-  double tau(const Cell& f, double part = 1.0) const;
+  double tau(const Cell& f, double eddies, double part = 1.0) const;
   Cell resistance(std::size_t cell);
   Cell solid_term(const Cell& f, const Cell& eq_fluid, double rho, const NaiveCover& c) const;
 
@@ -72,6 +74,7 @@ class NaiveLattice {
   std::vector<Cell> f_;
   std::vector<NaiveCover> cover_;
   std::vector<Vec3> force_;
+  std::vector<double> eddies_;
 };
 
 }  // namespace test

@@ -11,7 +11,7 @@ import importlib
 _RESULTS = ("Run", "quantity", "read_table", "result", "studies", "write_table")
 _READING = ("Field", "Frame", "Table")
 _PICTURES = ("UNITS", "animate", "drag_results", "draw_bonds", "draw_breaks", "draw_errors", "draw_slice", "draw_snapshots", "draw_speed",
-             "read_breaks")
+             "draw_viscosity", "read_breaks")
 _MODULES = {**dict.fromkeys(_RESULTS, "results"), **dict.fromkeys(_READING, "reading"), **dict.fromkeys(_PICTURES, "pictures")}
 
 __all__ = [*_MODULES]

@@ -2,6 +2,7 @@
 
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.collections import LineCollection, PatchCollection
+from matplotlib.colors import LogNorm
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -61,6 +62,15 @@ def draw_slice(axes, run, name, normal, at=None, vmax=None, length_unit=1e-2, qu
     axes.set_xlabel(f"{'xyz'[across]} [{UNITS[length_unit]}]")
     axes.set_ylabel(f"{'xyz'[up]} [{UNITS[length_unit]}]")
     axes.grid(False)
+    return image
+
+
+def draw_viscosity(axes, run, name, normal, limits=None, length_unit=1e-2):
+    """draw_slice of the fluid's viscosity [Pa s] on a logarithmic scale, of a scene with output.viscosity."""
+    viscosity = run.frame(name)["viscosity"] * run.parameters["density"]
+    image = draw_slice(axes, run, name, normal, length_unit=length_unit, quantity=viscosity)
+    image.set_norm(LogNorm(*(limits or (np.nanmin(viscosity), np.nanmax(viscosity)))))
+    image.set_cmap("viridis")
     return image
 
 

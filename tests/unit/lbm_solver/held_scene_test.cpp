@@ -29,6 +29,12 @@ std::string inlet(const std::string& keys) {
          "\n[[boundary]]\nside = \"right\"\nkind = \"pressure\"\n";
 }
 
+/// A pressure boundary on a side.
+std::string opening(const std::string& side, const std::string& keys = "",
+                    const std::string& kind = "pressure") {
+  return "[[boundary]]\nside = \"" + side + "\"\nkind = \"" + kind + "\"\n" + keys + "\n";
+}
+
 struct Refused {
   std::string name, scene;
   std::vector<std::string> words;
@@ -76,6 +82,26 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"flow_too_fast",
                 slot(kWater + "flow_rate = 0.1\n"),
                 {"fluid.flow_rate", "velocity_scale"}},
+        Refused{
+            "flow_through_two_openings",
+            slot(kWater, opening("left", "flow_rate = 1e-4") + opening("right", "flow_rate = 1e-4"),
+                 kWalls),
+            {"boundary.flow_rate", "one pressure is found at a time", "give the others"}},
+        Refused{"flow_that_gets_out_nowhere",
+                slot(kWater, opening("left", "flow_rate = 1e-4"), kWalls),
+                {"boundary.flow_rate", "no other opening", "add a boundary"}},
+        Refused{
+            "flow_through_an_outflow",
+            slot(kWater, opening("left", "flow_rate = 1e-4", "outflow") + opening("right"), kWalls),
+            {"flow_rate", "no meaning for an outflow", "pressure"}},
+        Refused{"flow_of_two_kinds",
+                slot(kWater + "flow_rate = 1e-4\nflow_axis = \"y\"\n",
+                     opening("left", "flow_rate = 1e-4") + opening("right"),
+                     "sides_x = \"wall\"\nsides_y = \"periodic\""),
+                {"boundary.flow_rate", "fluid.flow_rate", "leave one"}},
+        Refused{"flow_through_an_opening_too_fast",
+                slot(kWater, opening("left", "flow_rate = 0.1") + opening("right"), kWalls),
+                {"boundary.flow_rate", "velocity_scale"}},
         Refused{"profile_absent",
                 slot(kWater, inlet("profile_table = \"none.csv\""), kWalls),
                 {"profile_table", "none.csv", "beside the scene"}},
@@ -101,6 +127,20 @@ INSTANTIATE_TEST_SUITE_P(
                 slot(kWater, inlet("profile = \"parabolic\"\nprofile_table = \"two.csv\""), kWalls),
                 {"profile_table", "stands beside", "parabolic"}}),
     [](const auto& info) { return info.param.name; });
+
+// 1e-4 m³/s through an opening of 0.01 m and a depth of 1 m: 0.01 m/s.
+TEST(HeldOpening, FlowIsThatOfTheScene) {
+  const test::TemporaryFolder folder;
+  const Scene scene = read_scene({folder.write(
+      "scene.toml", slot(kWater, opening("left", "flow_rate = 1e-4") + opening("right"), kWalls))});
+  const Plan plan = make_plan(scene);
+  Fluid fluid = make_fluid(scene, plan, Decomposition(plan.domain));
+  ASSERT_TRUE(fluid.pressure_control());
+  EXPECT_NEAR(fluid.pressure_control()->wanted(0) / (20.0 * 0.01 / plan.units.velocity()), 1.0,
+              1e-9);
+  fluid.advance(20000);
+  EXPECT_NEAR(fluid.pressure_control()->flow() / fluid.pressure_control()->wanted(0), 1.0, 1e-3);
+}
 
 // A parabola from a table of 81 lines, against the one that a scene can name: chords are lower by
 // 4 (1/80)²/4 of the middle.

@@ -67,6 +67,13 @@ void copy_cover(const CoverMap& cover, const Domain& d, test::NaiveLattice& naiv
   });
 }
 
+/// Those of the step just made, and of the next ones.
+void copy_eddies(const Fluid& fluid, test::NaiveLattice& naive) {
+  if (!fluid.eddies()) return;
+  each_cell(fluid.domain(),
+            [&](int x, int y, int z) { naive.eddies(x, y, z) = fluid.eddies()->row(y, z)[x]; });
+}
+
 double largest_difference(Fluid& fluid, test::NaiveLattice& naive) {
   double largest = 0.0;
   const Lattice& l = fluid.lattice();
@@ -110,11 +117,10 @@ double largest_force_difference(const CoverMap& cover, const Domain& d, test::Na
 }
 
 /// A viscosity that falls with the shear rate, whose range the random states cross.
-std::shared_ptr<const RelaxationTable> thinning() {
-  static const auto table = std::make_shared<RelaxationTable>([](double shear_rate) {
-    return 0.5 + 3.0 * std::clamp(0.006 / std::sqrt(shear_rate), 0.03, 0.08);
+std::shared_ptr<const RelaxationTable> thinning(double times) {
+  return std::make_shared<RelaxationTable>([times](double shear_rate) {
+    return 0.5 + 3.0 * times * std::clamp(0.006 / std::sqrt(shear_rate), 0.03, 0.08);
   });
-  return table;
 }
 
 /// Rows of a lattice. In three dimensions, and in single precision, terms that share a
@@ -150,9 +156,15 @@ std::vector<KernelChoice> rows_of(const std::string& lattice, Precision precisio
                           .weight = weight,
                           .lattice = lattice,
                           .precision = precision});
-          if (smagorinsky > 0.0) continue;
+          if (smagorinsky > 0.0 && !force) continue;
           rows.push_back(rows.back());
-          rows.back().parameters.viscosity_table = thinning();
+          if (smagorinsky > 0.0) {
+            rows.back().eddies = EddyModel::Wale;
+            continue;
+          }
+          static const auto law = thinning(1.0), covered = thinning(1.2);
+          rows.back().parameters.viscosity_table = law;
+          rows.back().parameters.covered_table = covered;
         }
   }
   return rows;
@@ -192,6 +204,7 @@ std::vector<Domain> domains_of(const KernelChoice& c) {
 std::string name_of(const KernelChoice& c) {
   return c.lattice + (c.precision == Precision::Single ? "_single_" : "_") + name_of(c.collision) +
          (c.parameters.smagorinsky == 0.0 ? "" : "_les") +
+         (c.eddies == EddyModel::Wale ? "_wale" : "") +
          (c.parameters.viscosity_table ? "_thinning" : "") + (c.force ? "_force" : "") + "_" +
          c.solid_term +
          (c.weight == WeightRule::Fraction   ? "_fraction"
@@ -221,6 +234,7 @@ TEST_P(KernelTest, EqualsTheNaiveReference) {
         copy_cover(*fluid.cover(), domain, naive);
       }
       fluid.step();
+      copy_eddies(fluid, naive);
       naive.step();
       EXPECT_LT(largest_difference(fluid, naive), limit)
           << domain.nx << 'x' << domain.ny << 'x' << domain.nz << " step " << step;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "lbm_solver/viscosity/mean_law.h"
 #include "lbm_solver/viscosity/relaxation_table.h"
 
 namespace {
@@ -84,6 +85,37 @@ TEST(RelaxationTable, RefusesAStressThatFalls) {
   EXPECT_THROW(RelaxationTable([](double g) { return 0.5 + 1e-6 / (g * g + 1e-20); }),
                std::invalid_argument);
   EXPECT_THROW(RelaxationTable([](double) { return 0.4; }), std::invalid_argument);
+}
+
+// γ̇ ∝ σ^m, m = 1/n, of which the mean is ((1+a)^(m+1) - (1-a)^(m+1))/(2 a (m+1)) times that of the
+// middle; places 2 % apart, straight between, are off by some 1e-4.
+TEST(MeanLaw, OfAPowerLawIsTheIntegral) {
+  for (const double n : {0.3, 1.0, 1.5})
+    for (const double a : {0.05, 0.2}) {
+      const auto nu = [n](double rate) { return 1e-2 * std::pow(rate, n - 1.0); };
+      const MeanLaw mean([&](double rate) { return 0.5 + nu(rate); }, a);
+      const double m = 1.0 / n, factor = (std::pow(1.0 + a, m + 1.0) - std::pow(1.0 - a, m + 1.0)) /
+                                         (2.0 * a * (m + 1.0));
+      for (const double rate : {1e-7, 1e-3, 0.1})
+        EXPECT_NEAR((mean(factor * rate) - 0.5) / (nu(rate) / factor), 1.0, 5e-4) << n << ' ' << a;
+    }
+}
+
+// Where the largest of the stresses reaches the yield stress, within the 2 % between places; above
+// the smallest one the mean is that of the middle.
+TEST(MeanLaw, OfABinghamFluidYieldsWhereTheLargestStressDoes) {
+  constexpr double yield = 1e-5, plastic = 1e-2, stiff = 50.0, a = 0.1;
+  const MeanLaw mean(
+      [](double rate) { return 0.5 + std::min(plastic + yield / rate, double{stiff}); }, a);
+  const auto rate_at = [](double stress) {
+    return std::max(stress / stiff, (stress - yield) / plastic);
+  };
+  const double below = 0.97 * yield / (1.0 + a), above = 1.02 * yield / (1.0 - a);
+  EXPECT_NEAR(mean(below / stiff) - 0.5, stiff, 1e-3 * stiff);
+  EXPECT_NEAR((mean(rate_at(above)) - 0.5) * rate_at(above) / above, 1.0, 1e-3);
+  // at σ_y half of them have yielded: γ̄ = a σ_y/(4 plastic), and the creep of the other half
+  const double middle = 0.25 * a * yield / plastic;
+  EXPECT_NEAR((mean(middle) - 0.5) * middle / yield, 1.0, 1e-2);
 }
 
 }  // namespace
