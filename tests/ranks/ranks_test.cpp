@@ -252,7 +252,7 @@ void add_movers(Fluid& fluid) {
         pose.spin = {0.0, 0.0, 0.004};
         return pose;
       },
-      9.0);
+      9.0, true);
 }
 
 /// What walls that move do does not depend on the ranks: cells, and loads to 1e-12 of the largest.

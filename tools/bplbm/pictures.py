@@ -16,6 +16,15 @@ plt.rcParams.update({
 UNITS = {1.0: "m", 1e-2: "cm", 1e-3: "mm"}
 
 
+def draw_discs(axes, discs, particles):
+    """Circles (x, y, radius); the discs of clumps, where there are any, without the lines inside of them."""
+    discs = [plt.Circle((x, y), radius) for x, y, radius in discs if radius > 0]  # a clump's own row has none
+    clumps = np.any(particles[:, 0] < -1)
+    axes.add_collection(PatchCollection(discs, facecolor="white", edgecolor="black", linewidth=1.6 if clumps else 0.8))
+    if clumps:
+        axes.add_collection(PatchCollection(discs, facecolor="white", edgecolor="none"))
+
+
 def draw_speed(axes, run, name, vmax, length_unit=1e-2):
     """Colour map of the fluid's speed with the particles on it. Returns the image."""
     frame = run.frame(name)
@@ -23,9 +32,7 @@ def draw_speed(axes, run, name, vmax, length_unit=1e-2):
     speed = np.hypot(frame["velocity"][..., 0], frame["velocity"][..., 1])
     extent = [0, p["box_x"] / length_unit, 0, p["box_y"] / length_unit]
     image = axes.imshow(speed, origin="lower", extent=extent, cmap="magma", vmin=0, vmax=vmax)
-    discs = [plt.Circle((x / length_unit, y / length_unit), radius / length_unit)
-             for _, x, y, radius, *_ in frame["particles"]]
-    axes.add_collection(PatchCollection(discs, facecolor="white", edgecolor="black", linewidth=0.8))
+    draw_discs(axes, frame["particles"][:, 1:4] / length_unit, frame["particles"])
     axes.grid(False)
     return image
 
@@ -49,10 +56,9 @@ def draw_slice(axes, run, name, normal, at=None, vmax=None, length_unit=1e-2, qu
     particles = frame["particles"]
     depth = particles[:, 1 + axis] - at
     cut = np.abs(depth) < particles[:, 4]
-    discs = [plt.Circle((q[1 + across] / length_unit, q[1 + up] / length_unit),
-                        np.sqrt(q[4] ** 2 - d ** 2) / length_unit)
-             for q, d in zip(particles[cut], depth[cut])]
-    axes.add_collection(PatchCollection(discs, facecolor="white", edgecolor="black", linewidth=0.8))
+    q = particles[cut]
+    radii = np.sqrt(q[:, 4] ** 2 - depth[cut] ** 2)
+    draw_discs(axes, np.column_stack([q[:, 1 + across], q[:, 1 + up], radii]) / length_unit, particles)
     axes.set_xlabel(f"{'xyz'[across]} [{UNITS[length_unit]}]")
     axes.set_ylabel(f"{'xyz'[up]} [{UNITS[length_unit]}]")
     axes.grid(False)
