@@ -12,6 +12,9 @@ BELOW, ABOVE = 0.006, 0.008  # m, the screen's faces
 def passed(run):
     """Grains that have gone through the slot, of all, and times [s] with how many had by then."""
     table = read_table(run.folder / "probes.csv")
+    if np.any(table["id"] < -1):  # a clump has a row of its own beside those of its spheres
+        clumps = table["id"] < -1
+        table = {name: column[clumps] for name, column in table.items()}
     times = np.unique(table["time"])
     first = table["time"] == times[0]
     count = np.count_nonzero(first)
@@ -37,6 +40,12 @@ def main():
                               "a slot of 0.8 grains", 0, scale=1.0))
         told.append(quantity("flux with the slot clogged", narrow.flux(narrow.frames()[-1][1])[2], "m/s"))
         right.plot(held_times, held_through, label="slot of 0.8 grains")
+    if "variant-clumps" in others:
+        count, times, through = passed(others["variant-clumps"])
+        results.append(result("clumps through the wide slot", through[-1] / count, "1", 1.0,
+                              "it is twice as wide as a clump is long", 0.2))
+        told.append(quantity("clumps", count, "1"))
+        right.plot(times, through, label="clumps of two, slot of 3")
     run.write_results(results, told)
     right.set(xlabel="time [s]", ylabel="grains through the slot")
     right.legend()

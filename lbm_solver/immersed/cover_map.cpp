@@ -185,21 +185,18 @@ void CoverMap::move(std::span<const Pose> poses) {
     for (auto* list : {&blocks, &mover.far}) list->clear();
     for (auto* list : {&mover.places, &mover.far_places}) list->clear();
     const auto motion = static_cast<std::int32_t>(1 + k);
-    std::vector<double> outer;
     mover.shape->map(domain_, cells_, [&](const CoverSpan& span) {
-      const auto put = [&](std::span<const double> part, std::vector<CoverBlock>& to,
-                           std::vector<std::size_t>& at) {
+      const auto put = [&](std::span<const double> part, std::int32_t motion_of_it,
+                           std::vector<CoverBlock>& to, std::vector<std::size_t>& at) {
         each_block(span.x, span.arm, part, [&](const CoverBlock& block, int b) {
           to.push_back(block);
-          to.back().motion = motion;
+          to.back().motion = motion_of_it;
           at.push_back(place(span.y, span.z, b));
         });
       };
-      if (span.inner.empty()) return put(span.cover, blocks, mover.places);
-      put(span.inner, blocks, mover.places);
-      outer.assign(span.cover.begin(), span.cover.end());
-      for (std::size_t c = 0; c < outer.size(); ++c) outer[c] -= span.inner[c];
-      put(outer, mover.far, mover.far_places);
+      put(span.cover, motion, blocks, mover.places);
+      put(span.far, motion, mover.far, mover.far_places);
+      put(span.still, kAtRest, blocks, mover.places);
     });
     for (std::size_t i = 0; i < blocks.size(); ++i) insert(index_[mover.places[i]], blocks[i]);
     for (std::size_t i = 0; i < mover.far.size(); ++i)

@@ -102,10 +102,10 @@ void Fluid::add(const Geometry& geometry) {
   body.centre = geometry.centre();
 }
 
-void Fluid::add(const MeshSolid& solid, PoseInTime pose, std::optional<double> drum) {
+void Fluid::add(const MeshSolid& solid, PoseInTime pose, std::optional<double> drum, bool steady) {
   BPLBM_EXPECT(cover_ != nullptr);
   cover_->add(std::make_unique<MovingShape>(
-      solid, radius_shift(choice_.solid_term, domain().dimension()), drum));
+      solid, radius_shift(choice_.solid_term, domain().dimension()), drum, steady));
   Body& body = fixed_.emplace_back();
   body.id = static_cast<std::int64_t>(fixed_.size());
   movers_.push_back({fixed_.size() - 1, std::move(pose)});

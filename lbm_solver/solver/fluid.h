@@ -65,8 +65,11 @@ class Fluid {
   void add(const Geometry& geometry);
   /// A mesh that moves as it is told; before bodies are placed.
   /// @param drum  it is the wall of a drum, whose load is that of the cells nearer to the pivot
+  /// @param steady  it moves along itself at one velocity: nothing passes it from eleven cells
+  /// on, or a drum, whose cells farther than that stand
   /// @throws std::invalid_argument  see fill()
-  void add(const MeshSolid& solid, PoseInTime pose, std::optional<double> drum = {});
+  void add(const MeshSolid& solid, PoseInTime pose, std::optional<double> drum = {},
+           bool steady = false);
   /// Puts the meshes that move where they are at the present step; the next step does so too.
   void move_shapes();
 
@@ -163,6 +166,8 @@ class Fluid {
   Record save() const;
   void load(const Record& record);
 
+  /// Seconds that this rank has waited for its neighbours in its steps.
+  double waited() const { return halo_ ? halo_->waited() : 0.0; }
   /// Bytes that its parts take on all ranks: "populations" and, where covered cells are, "solids".
   /// Collective.
   std::map<std::string, double> bytes() const;

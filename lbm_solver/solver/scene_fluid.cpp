@@ -222,9 +222,12 @@ void add_shape(const Scene& s, const Plan& p, const Geometry& shape, const Obsta
   const auto pose = [units = p.units, motion = *o.motion](std::int64_t step) {
     return pose_in_cells(units, motion, step);
   };
-  const std::optional<double> half_way =
-      o.drum() ? std::optional(0.5 * o.diameter / p.units.dx + 0.5 * kDrumWall) : std::nullopt;
-  fluid.add(std::get<MeshSolid>(shape.shape), pose, half_way);
+  const bool steady = o.motion->surface_only && (o.motion->kind == MotionScene::Kind::Linear ||
+                                                 o.motion->kind == MotionScene::Kind::Rotation);
+  const auto drum =
+      o.drum() ? std::optional(0.5 * o.diameter / p.units.dx + (steady ? 0.6 : 0.5) * kDrumWall)
+               : std::nullopt;
+  fluid.add(std::get<MeshSolid>(shape.shape), pose, drum, steady);
 } catch (const std::invalid_argument& error) {
   throw InputError(s.file + ": obstacle.mesh", error.what(),
                    "turn it outwards, or leave the inner shell out");

@@ -77,10 +77,10 @@ void FixLbmCouple::count_leaving() {
   const std::int64_t* const carrier = clumps_.carriers();
   std::vector<long long> clumps;
   for (const int i : leaving(*lmp, groupbit)) {
-    if (carrier && carrier[i] != protocol::kItself)
-      clumps.push_back(carrier[i]);
-    else
+    if (!carrier || carrier[i] == protocol::kItself)
       ++left_;
+    else if (carrier[i] != ScriptClumps::kGone)
+      clumps.push_back(carrier[i]);
   }
   if (!carrier) return;
   std::vector<int> counts(comm->nprocs), begins(comm->nprocs);

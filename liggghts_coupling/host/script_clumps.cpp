@@ -4,6 +4,7 @@
 #include <atom.h>
 #include <comm.h>
 #include <domain.h>
+#include <fix_property_atom.h>
 #include <modify.h>
 
 #include <algorithm>
@@ -80,9 +81,14 @@ void ScriptClumps::find() {
 const std::int64_t* ScriptClumps::carriers() const {
   if (!any()) return nullptr;
   carriers_.assign(static_cast<std::size_t>(std::max(1, atom->nlocal)), protocol::kItself);
+  const double* const taken_out = multisphere_ && multisphere_->fix_delflag()
+                                      ? multisphere_->fix_delflag()->vector_atom
+                                      : nullptr;
   for (int i = 0; i < atom->nlocal; ++i) {
     if (multisphere_ && multisphere_->belongs_to(i) >= 0)
       carriers_[i] = multisphere_id(multisphere_->belongs_to(i));
+    else if (taken_out && taken_out[i] != 0.0)
+      carriers_[i] = kGone;
     for (std::size_t n = 0; n < rigid_.size(); ++n)
       if (const int body = (rigid_[n]->*Inside::body_of)[i]; body >= 0)
         carriers_[i] = rigid_id(n, body);

@@ -29,6 +29,9 @@ class ScriptClumps : protected LAMMPS_NS::Pointers {
   const LAMMPS_NS::FixMultisphere* multisphere() const { return multisphere_; }
   bool has_rigid() const { return !rigid_.empty(); }
 
+  /// The clump of a sphere whose clump is no more: another sphere of it has left the box, and
+  /// LIGGGHTS takes this one out when it looks for neighbours next.
+  static constexpr std::int64_t kGone = protocol::kItself - (std::int64_t{1} << 31) - 1;
   /// Of each local particle the clump that it belongs to; null where there are no clumps.
   const std::int64_t* carriers() const;
   /// Some of their spheres are in a group, some are not. Collective.

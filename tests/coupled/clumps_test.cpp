@@ -277,7 +277,8 @@ TEST_F(Clumps, TurnByTheTorqueOfTheirLoads) {
   expect_turn(rows("of_multisphere", true), about_y(1.5e-3, 0.9e-3, 2.4e-3, 2000.0), 0.01);
 }
 
-// Through the open side below: one clump of two spheres, which counts once.
+// Through the open side below: one clump of two spheres, which counts once, side by side and one
+// above the other, where the upper one is no grain of its own when the lower one has left.
 TEST_F(Clumps, ThatLeaveAnOpenBoxCountOnce) {
   const std::string scene = test::replaced(heavy(2500), "end_time = 0.05", "end_time = 0.04") +
                             "[[boundary]]\nside = \"back\"\nkind = \"pressure\"\n";
@@ -287,6 +288,8 @@ TEST_F(Clumps, ThatLeaveAnOpenBoxCountOnce) {
       "thermo_modify lost ignore\n");
   const std::string script = test::replaced(in_box, "0.0105 0.0115", "0.0015 0.0025");
   for (const int ranks : {1, 2}) {
+    folder_.write("two.txt",
+                  ranks == 1 ? "0 0 -0.5 1.5\n0 0 0.5 1.5\n" : "-0.5 0 0 1.5\n0.5 0 0 1.5\n");
     const JobResult job = run_script(script, scene, 1, ranks, "--out " + std::to_string(ranks));
     test::expect_end(job, 100.0, 0, {"1 grains left"});
     EXPECT_EQ(job.output.find("no fix of the script moves"), std::string::npos);

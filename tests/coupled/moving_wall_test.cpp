@@ -166,7 +166,7 @@ TEST_F(MovingBlock, AsksForNoMotionThatIsNotThere) {
   EXPECT_NE(job.output.find("nothing defines ${mesh2_motion}"), std::string::npos) << job.output;
 }
 
-constexpr const char* kDrum = R"(title = "disc in a drum"
+constexpr const char* kRolling = R"(title = "disc on a wall that moves along itself"
 [box]
 size = [0.0315, 0.0315]
 [fluid]
@@ -175,17 +175,13 @@ kinematic_viscosity = 1e-5
 gravity = [0.0, -9.8]
 velocity_scale = 0.1
 [[obstacle]]
-centre = [0.01575, 0.01575]
-diameter = 0.02
-hollow = true
-motion = "rotation"
-angular_velocity = 2.0
 surface_only = true
+OBSTACLE
 [particles]
 diameter = 0.003
 density = 2500.0
 contact_stiffness = 50000.0
-start = [[0.01575, 0.0073]]
+start = [[0.01575, HEIGHT]]
 [numerics]
 cell = 0.0005
 [coupling]
@@ -195,7 +191,7 @@ end_time = 0.6
 probe_every = 0.05
 )";
 
-constexpr const char* kDrumScript = R"(
+constexpr const char* kRollingScript = R"(
 include ${scene_folder}/common/box.liggghts
 create_atoms 1 single ${particle1_x} ${particle1_y} 0.0 units box
 set type 1 diameter ${diameter_max} density ${density_max}
@@ -206,7 +202,7 @@ fix gt all property/global gammat peratomtypepair 1 400
 fix mu all property/global coefficientFriction peratomtypepair 1 0.5
 pair_style gran model hooke/stiffness tangential history
 pair_coeff * *
-fix drum all wall/gran model hooke/stiffness tangential history primitive type 1 ${disc1_wall}
+WALL
 fix move all nve/sphere
 fix weight all gravity ${gravity} vector ${gravity_x} ${gravity_y} 0.0
 timestep ${solid_step}
@@ -215,32 +211,65 @@ fix flat all enforce2d
 run ${solid_steps_total}
 )";
 
-// It rolls at the bottom, where its weight and the liquid hold it: its rim has the wall's speed
+struct Rolling {
+  std::string name, obstacle, height, wall;
+  Vec3 below;  ///< from the disc's middle to where it touches, over its radius; zero: away from the
+               ///< middle of the box
+};
+
+class WallThatMovesAlongItself : public testing::TestWithParam<Rolling> {};
+
+// A disc rolls on it, held by its weight and the liquid: its rim has the wall's speed, 0.02 m/s,
 // where the two touch, to half a per cent for what they overlap.
-TEST(TurningDrum, MeetsGrainsAtTheSpeedOfItsWall) {
+TEST_P(WallThatMovesAlongItself, TakesGrainsAlongAtItsSpeed) {
+  const Rolling& c = GetParam();
   const test::TemporaryFolder folder;
-  folder.write("scene.toml", kDrum);
-  folder.write("in.liggghts", kDrumScript);
+  folder.write("scene.toml", test::replaced(test::replaced(kRolling, "OBSTACLE", c.obstacle),
+                                            "HEIGHT", c.height));
+  folder.write("in.liggghts", test::replaced(kRollingScript, "WALL", c.wall));
   test::run("ln -sfn " BPLBM_SOURCE_DIR "/cases/common common", folder.path(), 5.0);
   const JobResult job = test::run(
       mpirun({test::kLbm + " --progress none --out out"}, {test::kLiggghts + " -screen none"}),
       folder.path(), 60.0);
   ASSERT_EQ(job.exit_code, 0) << job.output;
   std::istringstream lines(test::read_file(folder.path() + "/out/probes.csv"));
-  std::string line, name, value;
+  std::string head, line, name, value;
   std::map<std::string, double> last;  // column by name
-  std::string head;
   std::getline(lines, head);
   while (std::getline(lines, line)) {
     std::istringstream names(head), values(line);
     while (std::getline(names, name, ',') && std::getline(values, value, ','))
       last[name.substr(0, name.find(' '))] = std::strtod(value.c_str(), nullptr);
   }
-  const Vec3 arm(last.at("x") - 0.01575, last.at("y") - 0.01575, 0.0);
-  const double along = (arm.x() * last.at("vy") - arm.y() * last.at("vx")) / arm.norm();
-  const double rim = along + last.at("omega") * 0.0015;
-  std::printf("rim at %.4f of the wall's speed\n", rim / (2.0 * 0.01));
-  EXPECT_NEAR(rim / (2.0 * 0.01), 1.0, 0.005);
+  Vec3 out = c.below;
+  if (out.norm() == 0.0)
+    out = Vec3(last.at("x") - 0.01575, last.at("y") - 0.01575, 0.0).normalized();
+  const Vec3 along(-out.y(), out.x(), 0.0);
+  const double rim =
+      last.at("vx") * along.x() + last.at("vy") * along.y() + last.at("omega") * 0.0015;
+  std::printf("%s: rim at %.4f of the wall's speed\n", c.name.c_str(), rim / 0.02);
+  EXPECT_NEAR(rim / 0.02, 1.0, 0.005);
 }
+const std::string kMeshWall =
+    "fix block all mesh/surface file ${mesh1} type 1 ${mesh1_motion}\n"
+    "fix blocks all wall/gran model hooke/stiffness tangential history mesh n_meshes 1 meshes "
+    "block";
+INSTANTIATE_TEST_SUITE_P(
+    Walls, WallThatMovesAlongItself,
+    testing::Values(
+        Rolling{"drum",
+                "centre = [0.01575, 0.01575]\ndiameter = 0.02\nhollow = true\n"
+                "motion = \"rotation\"\nangular_velocity = 2.0",
+                "0.0073",
+                "fix drum all wall/gran model hooke/stiffness tangential history primitive type 1 "
+                "${disc1_wall}",
+                {}},
+        Rolling{"belt",
+                "from = [0.004, 0.003]\nto = [0.0275, 0.0075]\nmotion = \"linear\"\n"
+                "velocity = [0.02, 0.0]",
+                "0.009",
+                kMeshWall,
+                {0.0, -1.0, 0.0}}),
+    [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -131,11 +131,10 @@ TEST(MovingWall, ACylinderHasTheTorqueOfTaylorAndCouette) {
   }
 }
 
-// A drum spins its fluid up until all of it turns with it. On the way the torque is what the fluid
-// inside gains. At the end 7 % of the first torque are left: fluid outside, four cells from the
-// sides of the box, drags the shell hard, and a part of that comes through to its inner half.
+// A drum spins its fluid up until all of it turns with it, and no torque is left. On the way the
+// torque is what the fluid inside gains. Its outer half stands, and with it the fluid around.
 TEST(MovingWall, ADrumTakesItsFluidAlong) {
-  const double r = 12.0, wall = 10.0, w = 0.003;
+  const double r = 12.0, wall = 10.0, w = 0.001;  // errors go with Ma²
   const Domain box{52, 52, Side::Wall, Side::Wall};
   const Vec3 middle(26.2, 25.9), up(0.0, 0.0, 200.0);
   Fluid fluid(box, choice(2, 0.8));
@@ -150,7 +149,7 @@ TEST(MovingWall, ADrumTakesItsFluidAlong) {
         pose.spin = {0.0, 0.0, w};
         return pose;
       },
-      r + 0.5 * wall);
+      r + 0.6 * wall, true);
   const auto spin = [&] {  // angular momentum of the fluid, and its mean over that of the drum
     double sum = 0.0, ratio = 0.0, count = 0.0;
     for (int y = 0; y < box.ny; ++y)
@@ -180,9 +179,7 @@ TEST(MovingWall, ADrumTakesItsFluidAlong) {
       100.0 * (impulse / gain - 1.0), spin().second, last_torque / first_torque);
   EXPECT_NEAR(impulse / gain, 1.0, 0.02);
   EXPECT_NEAR(spin().second, 1.0, 0.002);
-  // 6.7 % is left, where a closed drum in rest outside should leave less than 0.5 %. Drag of the
-  // fluid outside is suspected and not measured: until it is, this holds only that it dies away.
-  EXPECT_LT(std::abs(last_torque / first_torque), 0.1);
+  EXPECT_LT(std::abs(last_torque / first_torque), 0.005);
 }
 
 /// Velocity over a plate that oscillates along itself, against Stokes's second problem
@@ -267,20 +264,26 @@ TEST(MovingWall, AGateThatClosesDisplacesItsVolume) {
 
 /// What the fluid on one side of a plate loses in a step to the other, over what lies there, where
 /// a twentieth more of pressure stands on that side.
-double leak(bool moves, double thickness) {
+enum class Moves { No, Yes, SurfaceOnly };
+double leak(Moves moves, double thickness) {
   const Domain box{40, 12, Side::Wall, Side::Periodic};
   const double middle = 20.0, speed = 0.01;
   Fluid fluid(box, choice(2, 0.8));
   const MeshSolid plate = block({middle - 0.5 * thickness, 0.0}, {middle + 0.5 * thickness, 12.0});
-  if (moves)
-    fluid.add(plate, [=](std::int64_t step) {
-      Pose pose;
-      pose.velocity = {0.0, speed};
-      pose.shift = {0.0, speed * static_cast<double>(step)};
-      return pose;
-    });
-  else
+  const bool shifts = moves == Moves::Yes;
+  if (moves == Moves::No)
     fluid.add({plate});
+  else
+    fluid.add(
+        plate,
+        [=](std::int64_t step) {
+          Pose pose;
+          pose.velocity = {0.0, speed};
+          if (shifts) pose.shift = {0.0, speed * static_cast<double>(step)};
+          return pose;
+        },
+        {}, !shifts);
+  fluid.move_shapes();
   for (int y = 0; y < box.ny; ++y)
     for (int x = 0; x < box.nx; ++x)
       if (x < middle && fluid.solid_fraction(x, y) < 1.0) fluid.set_equilibrium(x, y, 1.05, Vec3());
@@ -296,13 +299,16 @@ double leak(bool moves, double thickness) {
   return std::abs(left() - before) / before / 1000.0;
 }
 
-// Closed is a layer of five cells, so that one of them is covered whole everywhere and what it
-// holds for a step is on its own side. At rest it reflects all that arrives. The cells of a wall
-// that moves forget a little of what they hold (resistance.md, Ringing), which lets some through.
-TEST(MovingWall, LetsNothingThroughAtRestAndLittleWhereItMoves) {
-  EXPECT_LT(leak(false, 5.0), 1e-12);
+// Closed is a layer of five cells at rest, so that one of them is covered whole everywhere and what
+// it holds for a step is on its own side. It reflects all that arrives. So does the deepest layer
+// of a wall that moves along itself at one velocity, from eleven cells on. Cells that take up the
+// motion of others forget a little of what they hold (resistance.md, Ringing), which lets some
+// through.
+TEST(MovingWall, LetsNothingThroughButWhereItMovesThroughTheCells) {
+  EXPECT_LT(leak(Moves::No, 5.0), 1e-12);
+  EXPECT_LT(leak(Moves::SurfaceOnly, 11.0), 1e-12);
   for (const double thickness : {5.0, 9.0}) {
-    const double moving = leak(true, thickness);
+    const double moving = leak(Moves::Yes, thickness);
     std::printf("plate of %.0f cells that moves: %.2g of the mass a step\n", thickness, moving);
     EXPECT_LT(moving, 1e-5);
   }

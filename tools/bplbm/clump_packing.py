@@ -36,6 +36,8 @@ def read_shape(path, dimension):
     """@throws ValueError  what is wrong with the file"""
     try:
         rows = np.loadtxt(path, ndmin=2)
+    except OSError:
+        raise ValueError(f"{path} cannot be read; give a file of lines x y z radius, as tools/make_clump writes them") from None
     except ValueError as error:
         raise ValueError(f"{path}: {error}; give lines of x y z radius, as tools/make_clump writes them") from None
     if rows.shape[1] != 4 or not np.all(np.isfinite(rows)) or not np.all(rows[:, 3] > 0):

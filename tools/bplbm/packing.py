@@ -290,6 +290,10 @@ def main():
         write(args, places, sizes)
     print(f"packing | {len(sizes)} {kind(args)}, {'area' if d == 2 else 'volume'} fraction {fraction:.3f}, largest overlap {max(left, 0):.2g} radii "
           f"-> {args.out}.liggghts, {args.out}.csv")
+    if args.clump:
+        ends_of = packing.diameters.min(), packing.diameters.max()
+        print(f"packing | their {len(packing.diameters)} {'discs' if d == 2 else 'spheres'} have diameters of {ends_of[0]:.6g} … "
+              f"{ends_of[1]:.6g} m: particles.diameter of a scene")
 
 
 if __name__ == "__main__":

@@ -22,6 +22,23 @@ def words(boundary):
     return kind
 
 
+def motion_text(obstacle, dimension):
+    """How an obstacle moves, in a few words; none for one that stands."""
+    kind = obstacle.get("motion")
+    if kind is None and "angular_velocity" not in obstacle:
+        return ""
+    where = " on its surface" if obstacle.get("surface_only") else ""
+    if kind in ("rotation", None):
+        speed = obstacle["angular_velocity"]
+        axis = "" if dimension == 2 else " about ({})".format(", ".join(f"{v:g}" for v in obstacle.get("axis", [0, 0, 1])))
+        return f"{abs(speed):g} rad/s {'↺' if speed > 0 else '↻'}{axis}{where}"
+    if kind == "linear":
+        return f"({', '.join(f'{v:g}' for v in obstacle['velocity'])}) m/s{where}"
+    if kind == "oscillation":
+        return f"oscillates at {obstacle['frequency']:g} Hz{where}"
+    return f"moves as {obstacle['motion_table']}{where}"
+
+
 def viscosity_text(fluid):
     """ν, or the law that it follows."""
     law = fluid.get("viscosity", {})

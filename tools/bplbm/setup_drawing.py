@@ -1,4 +1,4 @@
-"""Draws a scene's box, sides, obstacles, particles and drives, as its files describe them.
+"""Draws a scene's box, sides, obstacles, particles and drives, as its files describe them; three dimensions as seen along y.
 
     tools/draw_setup soil_erosion disc_migration
 
@@ -10,30 +10,31 @@ import pathlib
 import re
 import sys
 
-from matplotlib.collections import PatchCollection
+from matplotlib.collections import PatchCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap
 import matplotlib.pyplot as plt
 import numpy as np
 
 from bplbm import pictures  # noqa: F401  (its style)
 from bplbm import shapes
+from bplbm.page.setup import drawn_sides, flat_box, on_paper, stretch
 from bplbm.project import INSTALLED, tool
 from bplbm.reading import read_table
-from bplbm.scene_words import COLOR, drive_text, side_line, words
+from bplbm.scene_words import COLOR, drive_text, motion_text, side_line, words
 from bplbm.scenes import Unknown, find, scenes
 
 GREYS = LinearSegmentedColormap.from_list("solid", ["#eef4fb", "0.5"])  # from fluid to solid
-ATOM = re.compile(r"create_atoms\s+\d+\s+single\s+(\S+)\s+(\S+)")
+ATOM = re.compile(r"create_atoms\s+\d+\s+single\s+(\S+)\s+(\S+)\s+(\S+)")
 DIAMETER = re.compile(r"set\s+atom\s+(\d+)\s+diameter\s+(\S+)")
 
 
-def script_discs(folder):
-    """Discs x, y, diameter [m] that the scene's script creates with plain numbers, file by file."""
+def script_discs(folder, up):
+    """Discs or spheres x, y or z (up), diameter [m] that the scene's script creates with plain numbers, file by file."""
     discs = []
     for path in sorted(folder.glob("*.liggghts")):
         text = path.read_text()
-        places = [(float(x), float(y)) for x, y in ATOM.findall(text) if "$" not in x + y]
-        diameters = {int(i): float(d) for i, d in DIAMETER.findall(text)}
+        places = [(float(atom[0]), float(atom[up])) for atom in ATOM.findall(text) if "$" not in "".join(atom)]
+        diameters = {int(i): float(d) for i, d in DIAMETER.findall(text) if "$" not in d}
         if diameters:
             discs += [(x, y, diameters[i + 1]) for i, (x, y) in enumerate(places)]
         elif places:
@@ -43,38 +44,73 @@ def script_discs(folder):
 
 
 def discs_of(scene, folder):
-    p = scene.get("particles", {})
-    discs = [(x, y, np.max(p["diameter"])) for x, y in p.get("start", [])] if p else []
+    p, up = scene.get("particles", {}), len(scene["box"]["size"]) - 1
+    discs = [(place[0], place[up], np.max(p["diameter"])) for place in p.get("start", [])] if p else []
     if "grains" in scene:
         table = read_table(folder / scene["grains"]["file"])
-        discs += list(zip(table["x"], table["y"], table["diameter"]))
-    return discs + script_discs(folder)
+        discs += list(zip(table["x"], table["xyz"[up]], table["diameter"]))
+    return discs + script_discs(folder, up)
 
 
 def draw_sides(axes, scene, box, unit):
     lx, ly = box
-    for key, sides in (("sides_x", ("left", "right")), ("sides_y", ("bottom", "top"))):
+    for key, sides in drawn_sides(scene).items():
         periodic = scene["box"].get(key, "wall") == "periodic"
-        for side in sides:
+        for side in map(on_paper, sides):
             x, y = side_line(side, box, 0, ly if side in ("left", "right") else lx)
             axes.plot(x, y, "--" if periodic else "-", color="0.55" if periodic else "k", linewidth=1 if periodic else 2.5,
                       solid_capstyle="projecting", zorder=3)
     offsets = {"left": (-30, 0, "right"), "right": (6, 0, "left"), "bottom": (0, -32, "center"), "top": (0, 6, "center")}
     for b in scene.get("boundary", []):
-        length = ly if b["side"] in ("left", "right") else lx
-        x, y = side_line(b["side"], box, b.get("from", 0) / unit, b["to"] / unit if "to" in b else length)
+        if len(scene["box"]["size"]) == 3 and b["side"] in ("bottom", "top"):
+            continue  # they face the reader
+        side, (low, high) = on_paper(b["side"]), stretch(b, scene)
+        x, y = side_line(side, box, low / unit, high / unit)
         axes.plot(x, y, color=COLOR[b["kind"]], linewidth=5, solid_capstyle="butt", zorder=4)
-        dx, dy, align = offsets[b["side"]]
+        dx, dy, align = offsets[side]
         axes.annotate(words(b), (np.mean(x), np.mean(y)), xytext=(dx, dy), textcoords="offset points", ha=align,
                       va="center" if dx else "bottom", color=COLOR[b["kind"]], rotation=90 if dx else 0)
+
+
+def draw_obstacle(axes, o, scene, folder, unit):
+    up = len(scene["box"]["size"]) - 1
+    flat = [0, up]
+    if "diameter" in o and "from" in o:  # a cylinder, as a strip; one that points at the reader as a disc
+        ends, radius = np.array([o["from"], o["to"]])[:, flat] / unit, o["diameter"] / 2 / unit
+        along = ends[1] - ends[0]
+        if not np.any(along):
+            axes.add_patch(plt.Circle(ends[0], radius, facecolor="0.6", edgecolor="0.3", alpha=0.8))
+        else:
+            across = radius * np.array([-along[1], along[0]]) / np.linalg.norm(along)
+            axes.add_patch(plt.Polygon([ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across],
+                                       facecolor="0.6", edgecolor="0.3", alpha=0.8))
+    elif "diameter" in o:
+        ring = o.get("hollow", False)
+        axes.add_patch(plt.Circle(np.array(o["centre"])[flat] / unit, o["diameter"] / 2 / unit, zorder=1 if ring else 2,
+                                  facecolor="none" if ring else "0.6", edgecolor="0.3"))
+    elif "image" in o:
+        parts = shapes.solid_fraction(o, folder)
+        x0, x1, *_, y0, y1 = np.array(shapes.image_extent(o, parts, scene["box"].get("origin", [0.0] * (up + 1)))) / unit
+        parts = parts if parts.ndim == 2 else parts.max(axis=1)  # the most solid voxel along y
+        axes.imshow(np.where(parts > 0, parts, np.nan), origin="lower", extent=(x0, x1, y0, y1), cmap=GREYS, vmin=0, vmax=1,
+                    interpolation="nearest", zorder=1)
+    elif "mesh" in o:
+        triangles = shapes.facing(shapes.placed_mesh(o, folder))[:, :, flat] / unit
+        axes.add_collection(PolyCollection(triangles, facecolor="0.6", edgecolor="0.4", linewidth=0.3, alpha=0.8, zorder=2))
+    else:
+        low, high = np.array(o["from"])[flat] / unit, np.array(o["to"])[flat] / unit
+        axes.add_patch(plt.Rectangle(low, *(high - low), facecolor="0.6", edgecolor="0.3"))
+    if text := motion_text(o, up + 1):
+        low, high = (corner[flat] / unit for corner in shapes.extent(o, folder))
+        hollow = o.get("hollow", False)
+        axes.annotate(text, (0.5 * (low[0] + high[0]), high[1] if hollow else 0.5 * (low[1] + high[1])), ha="center",
+                      va="bottom" if hollow else "center", zorder=5, fontsize=8)
 
 
 def checked(tables):
     """Tables of a scene that can be drawn; lbm check says more about what is wrong with one."""
     if "fluid" not in tables:
         raise ValueError("a scene without a fluid is not drawn; its plot.py draws its samples")
-    if len(tables["box"]["size"]) == 3:
-        raise ValueError("a box in three dimensions is not drawn; after a run, bplbm.draw_slice cuts it")
     return tables
 
 
@@ -82,22 +118,11 @@ def figure_of(scene, folder):
     """A figure of a scene's tables; files that they name lie in the folder."""
     unit = 1e-3 if max(scene["box"]["size"]) < 0.5 else 1.0
     label = "mm" if unit == 1e-3 else "m"
-    box = np.array(scene["box"]["size"]) / unit
+    box, up = np.array(flat_box(scene)) / unit, "xyz"[len(scene["box"]["size"]) - 1]
     width = 4.6
     figure, axes = plt.subplots(figsize=(width, np.clip(width * box[1] / box[0], 1.6, 6.5)))
     for o in scene.get("obstacle", []):
-        if "diameter" in o:
-            ring = o.get("hollow", False)
-            axes.add_patch(plt.Circle(np.array(o["centre"]) / unit, o["diameter"] / 2 / unit, zorder=1 if ring else 2,
-                                      facecolor="none" if ring else "0.6", edgecolor="0.3"))
-        elif "image" in o:
-            parts = shapes.solid_fraction(o, folder)
-            extent = np.array(shapes.image_extent(o, parts, scene["box"].get("origin", [0.0, 0.0]))) / unit
-            axes.imshow(np.where(parts > 0, parts, np.nan), origin="lower", extent=extent, cmap=GREYS, vmin=0, vmax=1,
-                        interpolation="nearest", zorder=1)
-        else:
-            low, high = np.array(o["from"]) / unit, np.array(o["to"]) / unit
-            axes.add_patch(plt.Rectangle(low, *(high - low), facecolor="0.6", edgecolor="0.3"))
+        draw_obstacle(axes, o, scene, folder, unit)
     discs = [plt.Circle((x / unit, y / unit), d / 2 / unit) for x, y, d in discs_of(scene, folder)]
     axes.add_collection(PatchCollection(discs, facecolor="wheat", edgecolor="0.3", linewidth=0.5, zorder=2))
     draw_sides(axes, scene, box, unit)
@@ -108,8 +133,8 @@ def figure_of(scene, folder):
     axes.set_facecolor("#eef4fb")
     for spine in axes.spines.values():
         spine.set_visible(False)
-    axes.set_xlabel(f"x [{label}]", labelpad=16 if any(b["side"] == "bottom" for b in scene.get("boundary", [])) else 4)
-    axes.set_ylabel(f"y [{label}]", labelpad=16 if any(b["side"] == "left" for b in scene.get("boundary", [])) else 4)
+    axes.set_xlabel(f"x [{label}]", labelpad=16 if any(on_paper(b["side"]) == "bottom" for b in scene.get("boundary", [])) else 4)
+    axes.set_ylabel(f"{up} [{label}]", labelpad=16 if any(b["side"] == "left" for b in scene.get("boundary", [])) else 4)
     figure.text(0.5, 1.0, drive_text(scene), ha="center", va="bottom", fontsize=8, transform=figure.transFigure)
     return figure
 

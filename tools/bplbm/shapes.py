@@ -29,6 +29,25 @@ def placed_mesh(obstacle, folder):
     return turned + np.array(obstacle.get("move", [0.0, 0.0, 0.0]))
 
 
+def extent(obstacle, folder):
+    """Lower and upper corner of what bounds a disc, sphere, block or mesh, and of a cylinder's axis [m]."""
+    if "mesh" in obstacle:
+        corners = placed_mesh(obstacle, folder).reshape(-1, 3)
+        return corners.min(0), corners.max(0)
+    if "centre" in obstacle:
+        centre = np.array(obstacle["centre"], dtype=float)
+        return centre - 0.5 * obstacle["diameter"], centre + 0.5 * obstacle["diameter"]
+    ends = np.array([obstacle["from"], obstacle["to"]], dtype=float)
+    return ends.min(0), ends.max(0)
+
+
+def facing(corners):
+    """Triangles of a mesh that face whoever looks along y, seen from y = 0; the nearest last."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    seen = corners[a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2] < 0]
+    return seen[np.argsort(-seen[:, :, 1].mean(1), kind="stable")]
+
+
 def grey_levels(obstacle, folder):
     """Levels [z][y][x] or [y][x] of the file of an image obstacle, y upwards."""
     path = pathlib.Path(folder) / obstacle["image"]

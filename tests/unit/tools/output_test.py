@@ -159,13 +159,6 @@ class Command(InFolder):
                 self.assertIn(word, text.getvalue())
         self.assertIn("Traceback", (self.out / "plot.log").read_text())
 
-    def test_draw_setup_refuses_three_dimensions(self):
-        job = subprocess.run([ROOT / "tools" / "draw_setup", "ten_cate_sphere"], capture_output=True,
-                             text=True, timeout=30, check=False)
-        self.assertEqual(job.returncode, 2)
-        self.assertIn("three dimensions is not drawn", job.stderr)
-        self.assertNotIn("Traceback", job.stderr)
-
 
 class Stop(InFolder):
     """A stand-in for mpirun that starts an `lbm`, notes what signals come, and ends as it is told."""

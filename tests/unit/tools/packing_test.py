@@ -81,6 +81,92 @@ class Packing(unittest.TestCase):
         script = pathlib.Path(self.folder.name, "p.liggghts").read_text()
         self.assertEqual(script.count("density ${density_max}"), len(sizes))
 
+    def clumps(self, *more):
+        """Makes a packing of clumps of three. Returns places and diameters of the spheres, and the clump of each."""
+        pathlib.Path(self.folder.name, "three.txt").write_text("-0.5 0 0 0.5\n0.5 0 0 0.5\n0 0 0 0.6\n")
+        job = make(self.folder.name, "--clump", "three.txt", *more)
+        self.assertEqual(job.returncode, 0, job.stdout + job.stderr)
+        script = pathlib.Path(self.folder.name, "p.liggghts").read_text()
+        owner = np.array([int(line.split(" mol ")[1].split()[0]) for line in script.splitlines() if line.startswith("set atom")])
+        spheres = self.discs()
+        self.assertEqual(len(owner), len(spheres))
+        return spheres[:, :-1], spheres[:, -1], owner
+
+    def test_clumps(self):
+        for side, more in ((np.array([0.06, 0.03]), ["--fraction", "0.7"]),
+                           (np.full(3, 0.009), ["--box", *["0", "0.009"] * 3, "--fraction", "0.45"])):
+            places, sizes, owner = self.clumps(*more, "--periodic", "x")
+            worst = (np.maximum(0.5 * sizes[:, None] - places, places + 0.5 * sizes[:, None] - side)[:, 1:] / (0.5 * sizes[:, None])).max()
+            for i in range(len(sizes) - 1):  # brute force over all pairs of different clumps
+                apart = places[i + 1:] - places[i]
+                apart[:, 0] -= side[0] * np.round(apart[:, 0] / side[0])
+                overlap = (0.5 * (sizes[i] + sizes[i + 1:]) - np.linalg.norm(apart, axis=1)) / (0.5 * np.minimum(sizes[i], sizes[i + 1:]))
+                worst = max(worst, overlap[owner[i + 1:] != owner[i]].max(initial=0))
+            self.assertLessEqual(worst, 1e-3 + 1e-6)
+            dense = np.zeros(4000, bool)  # the fraction that the unions fill, by points
+            points = np.random.default_rng(1).uniform(0, side, (len(dense), len(side)))
+            for place, size in zip(places, sizes):
+                apart = points - place
+                apart[:, 0] -= side[0] * np.round(apart[:, 0] / side[0])
+                dense |= (apart**2).sum(1) < (0.5 * size)**2
+            self.assertAlmostEqual(dense.mean(), float(more[-1]), delta=0.035)  # of 4000 points: 1 % each way, and one clump
+            self.assertEqual(set(np.bincount(owner)[1:]), {3})
+
+    def test_a_fluid_couples_with_clumps(self):
+        _, sizes, owner = self.clumps("--fraction", "0.5", "--periodic", "x", "--diameter", "0.004", "0.005")
+        folder = pathlib.Path(self.folder.name)
+        (folder / "scene.toml").write_text(f"""[box]
+size = [0.06, 0.03]
+sides_x = "periodic"
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-4
+gravity = [0.0, -9.81]
+velocity_scale = 0.2
+[particles]
+diameter = [{sizes.min() * 0.999}, {sizes.max() * 1.001}]
+density = [1990.0, 2010.0]
+contact_stiffness = 1e4
+[numerics]
+cell = 0.0005
+[coupling]
+[run]
+end_time = 0.005
+[output]
+probe_every = 0.005
+""")
+        common = (ROOT / "cases" / "common" / "box.liggghts").read_text()
+        (folder / "in.liggghts").write_text(
+            common.replace("atom_style       granular", "atom_style hybrid granular molecular")
+            + "variable disc_density equal 2000*${depth}\ninclude p.liggghts\nneigh_modify exclude molecule all\n"
+            + "".join(f"fix {n} all property/global {n} peratomtypepair 1 {v}\n" for n, v in (
+                ("kn", "${contact_stiffness}"), ("kt", "${contact_stiffness}"), ("gamman", 100), ("gammat", 100), ("coefficientFriction", 0.5)))
+            + "pair_style gran model hooke/stiffness tangential history\npair_coeff * *\n"
+            + "".join(f"fix {n} all wall/gran model hooke/stiffness tangential history primitive type 1 yplane ${{y_{n}}}\n" for n in ("lo", "hi"))
+            + "fix move all rigid molecule\nfix weight all gravity ${gravity} vector ${gravity_x} ${gravity_y} 0\n"
+            + "timestep ${solid_step}\nfix fluid all lbm/couple every ${substeps}\nfix flat all enforce2d\nrun ${solid_steps_total}\n")
+        env = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        job = subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "none", "-np", "1", BIN / "lbm", "scene.toml", "--out", "out",
+                              ":", "-np", "1", BIN / "liggghts", "-in", "in.liggghts", "-screen", "none"],
+                             cwd=folder, env=env, capture_output=True, text=True, check=False, timeout=60)
+        self.assertEqual(job.returncode, 0, job.stdout + job.stderr)
+        table = np.loadtxt(folder / "out" / "probes.csv", delimiter=",", skiprows=1)
+        first = table[table[:, 0] == 0]
+        self.assertEqual(np.count_nonzero(first[:, 1] < -1), owner.max())  # a row of each clump
+        self.assertEqual(np.count_nonzero(first[:, 1] > 0), len(sizes))
+
+    def test_clumps_that_are_none_are_refused(self):
+        for text, word in (("1 2 3\n", "x y z radius"), ("0 0 0 -1\n", "positive"), ("0 0 1 1\n", "z = 0"), ("a b c d\n", "x y z radius")):
+            pathlib.Path(self.folder.name, "bad.txt").write_text(text)
+            job = make(self.folder.name, "--clump", "bad.txt")
+            self.assertEqual(job.returncode, 2)
+            self.assertIn(word, job.stderr)
+
+    def test_a_shape_that_is_not_there(self):
+        job = make(self.folder.name, "--clump", "none.txt")
+        self.assertEqual(job.returncode, 2)
+        self.assertIn("none.txt cannot be read", job.stderr)
+
     def test_refusals(self):
         for more, word in ((["--fraction", "0.95"], "cannot all fit"), (["--count", "900"], "cannot all fit"),
                            (["--fraction", "nan"], "finite"), (["--count", "0"], "at least 1"), (["--seed", "-1"], "--seed"),

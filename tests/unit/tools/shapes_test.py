@@ -9,12 +9,16 @@ import unittest
 from unittest import mock
 
 import h5py
+import matplotlib
 import numpy as np
 
+matplotlib.use("Agg")
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 from bplbm import shapes  # noqa: E402
 from bplbm.page.setup import Drawing  # noqa: E402
+from bplbm.scenes import find  # noqa: E402
+from bplbm.setup_drawing import figure_of  # noqa: E402
 
 PICTURES = ROOT / "tests/unit/lbm_solver/pictures"
 
@@ -86,6 +90,43 @@ class Images(unittest.TestCase):
         drawing = Drawing({"box": {"size": [0.001, 0.001, 0.001]}, "obstacle": [rock]})
         drawing.obstacles(ROOT / "cases/digital_rock")
         self.assertIn("data:image/png;base64,", drawing.svg())
+
+    def test_the_set_up_is_drawn_in_three_dimensions(self):
+        for name in ("screen_clogging", "digital_rock"):
+            scene = find(name)
+            figure = figure_of(scene.tables(), scene.folder)
+            axes = figure.axes[0]
+            drawn = len(axes.patches) + len(axes.collections) + len(axes.images)
+            self.assertGreater(drawn, 1, name)  # the particles' collection is always there
+            self.assertEqual(axes.get_ylabel()[0], "z")
+            figure.clear()
+
+    def test_a_cylinder_is_drawn_along_its_axis(self):
+        box = {"box": {"size": [1.0, 1.0, 1.0]}, "fluid": {"density": 1.0, "kinematic_viscosity": 1.0}}
+        for end, corners in (([0.8, 0.5, 0.5], 5), ([0.2, 0.9, 0.5], None)):
+            rod = {"from": [0.2, 0.5, 0.5], "to": end, "diameter": 0.1}
+            patch = figure_of({**box, "obstacle": [rod]}, pathlib.Path("none")).axes[0].patches[0]
+            self.assertEqual(len(patch.get_xy()) if corners else patch.get_radius(), corners or 0.05)
+
+    def test_what_moves_is_said(self):
+        drum = {"centre": [0.5, 0.5], "diameter": 0.6, "hollow": True, "motion": "rotation", "angular_velocity": -2.0, "surface_only": True}
+        belt = {"from": [0.1, 0.1], "to": [0.3, 0.2], "motion": "linear", "velocity": [0.2, 0.0]}
+        tables = {"box": {"size": [1.0, 1.0]}, "fluid": {"density": 1000.0, "kinematic_viscosity": 1e-6}, "obstacle": [drum, belt]}
+        drawing = Drawing(tables)
+        drawing.obstacles("")
+        texts = [text.get_text() for text in figure_of(tables, pathlib.Path("none")).axes[0].texts]
+        for said in ("2 rad/s ↻ on its surface", "(0.2, 0) m/s"):
+            self.assertIn(said, drawing.svg())
+            self.assertIn(said, texts)
+
+    def test_the_discs_of_a_clump_have_no_lines_inside(self):
+        import matplotlib.pyplot as plt
+        from bplbm.pictures import draw_discs
+        axes = plt.figure().add_subplot()
+        particles = np.array([[-3, 0.5, 0.5, 0.0], [1, 0.4, 0.5, 0.2], [2, 0.6, 0.5, 0.2]])  # the clump's own row first
+        draw_discs(axes, particles[:, 1:4], particles)
+        self.assertEqual([len(c.get_paths()) for c in axes.collections], [2, 2])
+        self.assertEqual(len(axes.collections[1].get_edgecolor()), 0)  # the second covers the first one's lines
 
 
 if __name__ == "__main__":

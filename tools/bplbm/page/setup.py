@@ -9,7 +9,7 @@ import numpy as np
 
 from bplbm import shapes
 from bplbm.reading import read_table
-from bplbm.scene_words import COLOR, drive_text, side_line, words
+from bplbm.scene_words import COLOR, drive_text, motion_text, side_line, words
 
 MOST_DISCS = 4000
 MOST_TRIANGLES = 6000
@@ -108,12 +108,19 @@ class Drawing:
 
     def mesh(self, o, folder):
         """The triangles of a mesh that face the reader, seen along y."""
-        corners = shapes.placed_mesh(o, folder)
-        a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-        facing = corners[a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2] < 0]
+        facing = shapes.facing(shapes.placed_mesh(o, folder))
         outline = "".join("M" + "L".join("{:.1f} {:.1f}".format(*self.place(corner)) for corner in t) + "Z"
                           for t in facing[:MOST_TRIANGLES])
         self.parts.append(f'<path d="{outline}" fill="#999" stroke="#555" stroke-width=".3" fill-opacity=".8"/>')
+
+    def motion(self, o, folder):
+        """How an obstacle moves: in its middle, of a hollow one above it."""
+        text = motion_text(o, dimensions(self.tables))
+        if not text:
+            return
+        low, high = shapes.extent(o, folder)
+        x, y = self.place(np.append(0.5 * (low + high)[:-1], high[-1] if o.get("hollow") else 0.5 * (low + high)[-1]))
+        self.parts.append(f'<text x="{x:.1f}" y="{y - 4 if o.get("hollow") else y + 4:.1f}" class="middle">{html.escape(text)}</text>')
 
     def obstacles(self, folder):
         for o in self.tables.get("obstacle", []):
@@ -135,6 +142,8 @@ class Drawing:
                 (x0, y1), (x1, y0) = self.place(o["from"]), self.place(o["to"])
                 self.parts.append(f'<rect x="{x0:.1f}" y="{y0:.1f}" width="{x1 - x0:.1f}" height="{y1 - y0:.1f}" fill="#999" '
                                   'stroke="#555"/>')
+        for o in self.tables.get("obstacle", []):
+            self.motion(o, folder)
 
     def discs(self, discs, fill="#f4dfb8"):
         for x, y, radius in discs[:MOST_DISCS]:
