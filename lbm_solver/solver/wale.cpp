@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "lbm_solver/solver/fluid.h"
 
@@ -107,20 +108,30 @@ void Wale::update(Fluid& fluid) {
 }
 
 Record Wale::save() const {
+  const CellRange here = range_of(ranks_.cells());
+  const auto read = [this, here](const CellRange& piece, std::span<double> to) {
+    piece.each([&](const Cell3& c, std::size_t number) {
+      to[number] = field_.row(c[1] - here.begin[1], c[2] - here.begin[2])[c[0] - here.begin[0]];
+    });
+  };
   Record record;
-  const auto values = field_.values();
-  record.set("factors", ranks_.gather(std::vector<double>(values.begin(), values.end()), 1));
+  record.set("factors", CellValues{ranks_.domain().cells(), 1, true, here, read});
   return record;
 }
 
 void Wale::load(const Record& record) {
-  std::vector<double> values;
-  const Cell3 all = ranks_.domain().cells();
-  if (ranks_.rank() == 0)
-    values = record.list<double>("factors", static_cast<std::size_t>(all[0]) * all[1] * all[2]);
-  values = ranks_.scatter(std::move(values), 1);
-  std::ranges::transform(values, field_.values().begin(),
-                         [](double value) { return static_cast<float>(value); });
+  const CellRange here = range_of(ranks_.cells());
+  const CellValues& factors = record.cells("factors", ranks_.domain().cells(), 1);
+  if (!factors.here.holds(here))
+    throw std::invalid_argument("'factors' are of cells of another rank");
+  for (const CellRange& piece : pieces_of(here, sizeof(double))) {
+    std::vector<double> values(piece.count());
+    factors.read(piece, values);
+    piece.each([&](const Cell3& c, std::size_t number) {
+      field_.row(c[1] - here.begin[1], c[2] - here.begin[2])[c[0] - here.begin[0]] =
+          static_cast<float>(values[number]);
+    });
+  }
 }
 
 }  // namespace lbm

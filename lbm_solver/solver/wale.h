@@ -35,8 +35,8 @@ class Wale {
   void update(Fluid& fluid);
   const EddyField& field() const { return field_; }
 
-  /// Complete on rank 0. Collective.
   Record save() const;
+  /// @throws std::invalid_argument  the record is of another box
   void load(const Record& record);
 
  private:
