@@ -17,6 +17,7 @@
 #include "lbm_solver/io/output_folder.h"
 #include "lbm_solver/io/scene_keys.h"
 #include "lbm_solver/io/scene_reader.h"
+#include "lbm_solver/solver/work.h"
 #include "protocol/program/command_line.h"
 #include "protocol/program/mpi_start.h"
 #include "protocol/program/program.h"
@@ -139,6 +140,27 @@ std::unique_ptr<OutputFolder> take_folder(const Options& o, const Scene& scene,
   return folder;
 }
 
+/// Rank 0 looks for damage; where there is none left to go on from, every rank sees for itself.
+std::optional<Restart> find_restart_together(const Scene& scene, const Options& o, MPI_Comm comm) {
+  if (o.run.restart.from.empty()) return std::nullopt;
+  enum Found { kNothing, kLast, kEarlier };
+  int rank = 0, found = kNothing;
+  MPI_Comm_rank(comm, &rank);
+  std::optional<Restart> restart;
+  std::exception_ptr mistake;
+  if (rank == 0) try {
+      restart = find_restart(scene, o.run.out, o.run.restart);
+      found = restart->earlier ? kEarlier : kLast;
+    } catch (...) {
+      mistake = std::current_exception();
+    }
+  MPI_Bcast(&found, 1, MPI_INT, 0, comm);
+  if (mistake) std::rethrow_exception(mistake);
+  if (rank == 0) return restart;
+  if (found == kNothing) return find_restart(scene, o.run.out, o.run.restart);
+  return take_restart(scene, o.run.out, o.run.restart, found == kEarlier);
+}
+
 /// How the box is divided among the ranks of lbm.
 Decomposition divide(const Options& o, const Scene& scene, const Plan& plan, MPI_Comm comm) {
   int size = 0;
@@ -154,6 +176,20 @@ Decomposition divide(const Options& o, const Scene& scene, const Plan& plan, MPI
     return {plan.domain, comm, grid};
   } catch (const std::invalid_argument& error) {
     throw InputError("mpirun", error.what(), "start fewer ranks of lbm, or give another --grid");
+  }
+}
+
+/// What is known of the work of the layers where blocks shall share it. @throws InputError
+std::optional<LayerWork> known_work(const Scene& scene, const Plan& plan,
+                                    const Decomposition& ranks,
+                                    const std::optional<Restart>& restart) {
+  if (!scene.numerics.equal_work || ranks.alone()) return {};
+  if (!restart || !restart->record.parts().contains("work")) return first_work(scene, plan, ranks);
+  try {
+    return load_work(restart->record.part("work"), plan.domain);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(restart->path, fmt::format("does not fit this scene: {}", error.what()),
+                     "start again without --restart");
   }
 }
 
@@ -185,10 +221,10 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
                             ? scene.coupling->timeout
                             : protocol::seconds_from_environment("BPLBM_TIMEOUT", kAloneSeconds));
   check_until(scene, o.run);
-  std::optional<Restart> restart = find_restart(scene, o.run.out, o.run.restart);
+  const std::optional<Restart> restart = find_restart_together(scene, o, world.local);
   const Plan plan = make_plan(scene, restart ? std::optional(restart->step) : std::nullopt);
   if (restart) check_same_scene(*restart, scene, plan, o.run.restart);
-  const Decomposition ranks = divide(o, scene, plan, world.local);
+  const Decomposition blocks = divide(o, scene, plan, world.local);
   if (scene.coupling && !channel)
     throw InputError(
         "mpirun", "no solid program was started beside lbm",
@@ -198,6 +234,8 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
                      "start lbm alone, or add the tables [coupling] and [particles]");
   if (!o.record.empty() && !channel)
     throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
+  const auto work = known_work(scene, plan, blocks, restart);
+  const Decomposition ranks = work ? of_equal_work(blocks, *work) : blocks;
   const std::unique_ptr<OutputFolder> folder = take_folder(o, scene, ranks);
   if (!o.record.empty())
     channel = protocol::make_recording_channel(
@@ -210,8 +248,8 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
     log.block("kept         the earlier run of this folder is now " + folder->set_aside());
   log.block(describe(scene, plan));
   if (!ranks.alone())
-    log.block(fmt::format("ranks        {} × {} × {}\n", ranks.grid()[0], ranks.grid()[1],
-                          ranks.grid()[2]));
+    log.block(fmt::format("ranks        {} × {} × {}{}\n", ranks.grid()[0], ranks.grid()[1],
+                          ranks.grid()[2], work ? describe_blocks(ranks, *work) : ""));
   const Restart* from = restart ? &*restart : nullptr;
   log.block(describe(scene.coupling ? run_coupled(scene, plan, ranks, *channel, o.run, log, from)
                                     : run_alone(scene, plan, ranks, o.run, log, from)));

@@ -143,7 +143,7 @@ def picture(found, run):
 
 def picture_plane(run):
     """Speed and viscosity on the plane half-way up, at the end."""
-    figure, axes = plt.subplots(1, 2, figsize=(7.6, 3.6), sharey=True)
+    figure, axes = plt.subplots(1, 2, figsize=(7.6, 3.6), sharey=True, layout="constrained")
     last = run.frames()[-1][1]
     image = draw_slice(axes[0], run, last, "z", length_unit=1e-3)
     figure.colorbar(image, ax=axes[0], label="speed [m/s]", fraction=0.05, pad=0.03)

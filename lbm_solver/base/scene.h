@@ -172,6 +172,7 @@ struct NumericsScene {
   std::optional<double> magic;      ///< Λ of TRT; absent: see solver/plan.h
   double smagorinsky = 0.0;         ///< S_c; 0: no turbulence model
   bool wale = false;                ///< its eddy viscosity adapts to walls
+  bool equal_work = false;          ///< blocks of the ranks: of equal work instead of equal size
 };
 
 struct ParticleScene {

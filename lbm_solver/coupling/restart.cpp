@@ -24,13 +24,9 @@ using Settings = std::map<std::string, std::string>;
 constexpr const char* kBeginAnew = "start again without --restart";
 
 /// Of output and of the run's end: nothing that the next step depends on.
-constexpr std::array kFree{"title",
-                           "run.end_time",
-                           "run.steady_below",
-                           "output",
-                           "run.checkpoint_every",
-                           "coupling.timeout",
-                           "coupling.connect_timeout"};
+constexpr std::array kFree{
+    "title",           "run.end_time",         "run.steady_below", "output",
+    "numerics.blocks", "run.checkpoint_every", "coupling.timeout", "coupling.connect_timeout"};
 /// Of what drives the run: the state fits whatever they are.
 constexpr std::array kAcceptable{"fluid.gravity",
                                  "fluid.body_force",
@@ -107,11 +103,13 @@ void check_solid_part(const Restart& restart, const std::string& from) {
                    "is damaged, or another file than the solid wrote at that interval", kBeginAnew);
 }
 
+enum class Damage { Look, KnownToBeNone };
+
 Restart read_pair(const Scene& scene, const std::string& folder, const std::string& path,
-                  const RestartOptions& options) {
+                  const RestartOptions& options, Damage damage = Damage::Look) {
   Restart restart;
   restart.path = path;
-  restart.record = read_checkpoint(path);
+  restart.record = damage == Damage::Look ? read_checkpoint(path) : read_record(path);
   try {
     restart.interval = restart.record.integer("interval");
     restart.step = restart.record.real("time_step");
@@ -119,7 +117,7 @@ Restart read_pair(const Scene& scene, const std::string& folder, const std::stri
       throw std::invalid_argument("'interval' or 'time_step' is no such number");
     if (!scene.coupling) return restart;
     restart.solid_part = protocol::SolidParts(folder + "/" + options.from).name(restart.interval);
-    check_solid_part(restart, options.from);
+    if (damage == Damage::Look) check_solid_part(restart, options.from);
   } catch (const std::invalid_argument& error) {
     throw InputError(path, fmt::format("is no checkpoint of this scene: {}", error.what()),
                      kBeginAnew);
@@ -172,6 +170,15 @@ std::optional<Restart> find_restart(const Scene& scene, const std::string& folde
           "no checkpoint is left to go on from");
     }
   }
+}
+
+Restart take_restart(const Scene& scene, const std::string& folder, const RestartOptions& options,
+                     bool earlier) {
+  const std::string path =
+      earlier ? fluid_part_before(folder, options.from) : fluid_part(folder, options.from);
+  Restart restart = read_pair(scene, folder, path, options, Damage::KnownToBeNone);
+  restart.earlier = earlier;
+  return restart;
 }
 
 void check_same_scene(const Restart& restart, const Scene& scene, const Plan& plan,

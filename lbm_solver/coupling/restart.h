@@ -38,6 +38,11 @@ std::string fluid_part_before(const std::string& folder, const std::string& name
 std::optional<Restart> find_restart(const Scene& scene, const std::string& folder,
                                     const RestartOptions& options);
 
+/// The last pair, or the one before it, which another rank has found to be whole: it is read
+/// without looking for damage, which takes reading all of it.
+Restart take_restart(const Scene& scene, const std::string& folder, const RestartOptions& options,
+                     bool earlier);
+
 /// Refuses to go on with another scene than that of the checkpoint.
 /// @throws InputError  lists every difference: key, then, now
 void check_same_scene(const Restart& restart, const Scene& scene, const Plan& plan,

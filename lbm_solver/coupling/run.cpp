@@ -2,17 +2,14 @@
 #include "lbm_solver/coupling/run.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/lubrication.h"
+#include "lbm_solver/coupling/run_state.h"
 #include "lbm_solver/coupling/stop_times.h"
 #include "lbm_solver/io/checkpoint.h"
 #include "lbm_solver/io/script_variables.h"
@@ -23,41 +20,9 @@
 namespace lbm {
 namespace {
 
-/// Bytes that this process has had in memory at most; 0 where the system does not tell.
-double peak_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return 1024.0 * std::strtod(line.c_str() + 6, nullptr);
-  return 0.0;
-}
-
 std::int64_t last_interval(const Plan& plan, const RunOptions& options) {
   if (!options.until) return plan.intervals;
   return std::clamp<std::int64_t>(first_state(*options.until, plan.interval()), 1, plan.intervals);
-}
-
-/// The summary of a run that has ended. Collective.
-Summary summarise(const Scene& scene, const RunOptions& options, const Fluid& fluid,
-                  const Observers& observers, const PartClock& clock, const std::string& ending) {
-  Summary summary = observers.summary(clock.total());
-  summary.scene = scene.title;
-  summary.set = options.set;
-  summary.variant = options.variant;
-  summary.versions["lbm"] = BPLBM_VERSION;
-  summary.ending = ending;
-  summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  for (const auto& [part, seconds] : clock.parts())
-    summary.time_share[part] = seconds / clock.total();
-  if (const auto found = clock.parts().find("checkpoint"); found != clock.parts().end())
-    summary.writing["checkpoints"] = found->second;
-  const double peak = peak_memory();
-  std::array<double, 1> all{peak};
-  const double largest = fluid.ranks().max(peak);
-  fluid.ranks().sum(all);
-  summary.peak_megabytes = {
-      {"first_rank", 1e-6 * peak}, {"largest", 1e-6 * largest}, {"all", 1e-6 * all[0]}};
-  for (const auto& [part, bytes] : fluid.bytes()) summary.megabytes[part] = 1e-6 * bytes;
-  return summary;
 }
 
 /// Where a coupled run begins, and where its checkpoints lie.
@@ -147,11 +112,13 @@ class CoupledRun {
       throw;
     }
     clock_.charge("output");
-    Summary summary = summarise(scene_, options_, fluid_, observers_, clock_, ending_);
+    Summary summary =
+        summarise(scene_, options_.set, options_.variant, fluid_, observers_, clock_, ending_);
     summary.versions[partner_.program] = partner_.program_version;
     summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
     summary.waiting = clock_.parts().at("waiting");
     if (particles_.report()) summary.solid = *particles_.report();
+    say_busiest(scene_, fluid_, summary, log_);
     if (ranks_.rank() == 0) write_summary(options_.out, summary);
     return summary;
   }
@@ -261,12 +228,9 @@ class CoupledRun {
   void write_state(const std::string& name, std::int64_t interval, const std::string& before) {
     const bool coupled = name == "checkpoint";  // at a fault, the other may not have its part yet
     const protocol::SolidParts parts(options_.out + "/" + name);
-    Record record;
-    if (ranks_.rank() == 0)
-      record = checkpoint_record(scene_, plan_, interval, coupled ? parts.name(interval) : "");
-    record.set("fluid", fluid_.save());
+    Record record = state_record(scene_, plan_, fluid_, observers_, interval,
+                                 coupled ? parts.name(interval) : "");
     record.set("particles", memory_ ? *memory_ : particles_.save());
-    record.set("observers", observers_.save());
     lbm::write_checkpoint(fluid_part(options_.out, name), record, interval, before, &ranks_);
     clock_.charge("checkpoint");
   }
@@ -352,10 +316,7 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
   bool keep_last = !restart || !restart->earlier;
   const auto write_state = [&](std::int64_t step) {
     clock.charge("output");
-    Record record;
-    if (ranks.rank() == 0) record = checkpoint_record(scene, plan, step, "");
-    record.set("fluid", fluid.save());
-    record.set("observers", observers.save());
+    const Record record = state_record(scene, plan, fluid, observers, step, "");
     write_checkpoint(fluid_part(options.out, "checkpoint"), record, step,
                      keep_last ? fluid_part_before(options.out, "checkpoint") : "", &ranks);
     keep_last = true;
@@ -393,7 +354,9 @@ Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ran
     observers.after_interval(next - 1, fluid, nullptr);
     clock.charge("output");
   }
-  const Summary summary = summarise(scene, options, fluid, observers, clock, ending);
+  const Summary summary =
+      summarise(scene, options.set, options.variant, fluid, observers, clock, ending);
+  say_busiest(scene, fluid, summary, log);
   if (ranks.rank() == 0) write_summary(options.out, summary);
   return summary;
 }

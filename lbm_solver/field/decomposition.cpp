@@ -23,17 +23,47 @@ MPI_Datatype type_of() {
 
 }  // namespace
 
-Decomposition::Decomposition(const Domain& domain)
-    : domain_(domain), cells_(Block::whole(domain)) {}
+Cuts equal_cuts(const Domain& domain, const Cell3& grid) {
+  Cuts cuts;
+  for (int a = 0; a < 3; ++a)
+    for (int p = 0; p <= grid[a]; ++p)
+      cuts[a].push_back(static_cast<int>(static_cast<long long>(domain.cells()[a]) * p / grid[a]));
+  return cuts;
+}
 
-Decomposition::Decomposition(const Domain& domain, MPI_Comm comm, const Cell3& grid)
-    : domain_(domain), comm_(comm), grid_(grid) {
+std::vector<int> cuts_of_equal_sums(std::span<const double> layers, int parts) {
+  const int n = static_cast<int>(layers.size());
+  std::vector<double> below{0.0};  // [border]
+  for (const double layer : layers) below.push_back(below.back() + layer);
+  std::vector<int> cuts{0};
+  for (int p = 1; p < parts; ++p) {
+    const double wanted = below.back() * p / parts;
+    const auto above = std::lower_bound(below.begin(), below.end(), wanted);
+    int cut = static_cast<int>(above - below.begin());
+    if (cut > 0 && wanted - below[cut - 1] < *above - wanted) --cut;
+    cuts.push_back(std::clamp(cut, cuts.back() + kLeastCells, n - kLeastCells * (parts - p)));
+  }
+  cuts.push_back(n);
+  return cuts;
+}
+
+Decomposition::Decomposition(const Domain& domain)
+    : domain_(domain), cuts_(equal_cuts(domain, grid_)), cells_(Block::whole(domain)) {}
+
+Decomposition::Decomposition(const Domain& domain, MPI_Comm comm, const Cell3& grid,
+                             const Cuts& cuts)
+    : domain_(domain), comm_(comm), grid_(grid), cuts_(cuts) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &size_);
-  for (int a = 0; a < 3; ++a)
-    if (grid[a] > 1 && domain.cells()[a] / grid[a] < kLeastCells)
+  for (int a = 0; a < 3; ++a) {
+    bool fits = cuts[a].size() == static_cast<std::size_t>(grid[a]) + 1 && cuts[a].front() == 0 &&
+                cuts[a].back() == domain.cells()[a];
+    for (int p = 0; fits && grid[a] > 1 && p < grid[a]; ++p)
+      fits = cuts[a][p + 1] - cuts[a][p] >= kLeastCells;
+    if (!fits)
       throw std::invalid_argument(std::to_string(grid[a]) + " ranks along " + "xyz"[a] + " for " +
                                   std::to_string(domain.cells()[a]) + " cells");
+  }
   if (grid[0] * grid[1] * grid[2] != size_)
     throw std::invalid_argument("the grid of ranks has not as many as there are");
   cells_ = cells_of(rank_);
@@ -44,14 +74,11 @@ Cell3 Decomposition::place_of(int rank) const {
 }
 
 Block Decomposition::cells_of(int rank) const {
-  const Cell3 place = place_of(rank), n = domain_.cells();
+  const Cell3 place = place_of(rank);
   Block block = Block::whole(domain_);
   for (int a = 0; a < 3; ++a) {
-    const auto border = [&](int p) {
-      return static_cast<int>(static_cast<long long>(n[a]) * p / grid_[a]);
-    };
-    block.begin[a] = border(place[a]);
-    block.size[a] = border(place[a] + 1) - block.begin[a];
+    block.begin[a] = cuts_[a][place[a]];
+    block.size[a] = cuts_[a][place[a] + 1] - block.begin[a];
     if (grid_[a] == 1) continue;
     const bool wall = domain_.sides()[a] == Side::Wall;
     block.faces[a][0] = wall && place[a] == 0 ? Face::Wall : Face::Neighbour;

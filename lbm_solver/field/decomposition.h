@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -16,9 +17,17 @@ inline CellRange range_of(const Block& block) {
   return {block.begin, block.size};
 }
 
-/// How the cells of the box are divided among the ranks of this program: a grid of blocks, each of
-/// about the same size. Rank 0 gathers what is written to files. All functions that say so are
-/// collective: every rank calls them at the same place.
+/// Borders of the blocks along each axis, in cells: the first is 0 and the last the box's end.
+using Cuts = std::array<std::vector<int>, 3>;
+/// Blocks of about the same size.
+Cuts equal_cuts(const Domain& domain, const Cell3& grid);
+/// Borders along one axis between which the sums of what its layers hold are as equal as whole
+/// layers let them, no part thinner than a block may be. @param layers  not negative
+std::vector<int> cuts_of_equal_sums(std::span<const double> layers, int parts);
+
+/// How the cells of the box are divided among the ranks of this program: a grid of blocks, equal or
+/// with borders of their own. Rank 0 gathers what is written to files. All functions that say so
+/// are collective: every rank calls them at the same place.
 class Decomposition {
  public:
   /// The whole box on one rank; needs no MPI.
@@ -26,13 +35,16 @@ class Decomposition {
   /// @param comm  all ranks of this program; must outlive the object
   /// @param grid  ranks along x, y, z; their product is the size of `comm`
   /// @throws std::invalid_argument where a rank would be left without two cells along an axis
-  Decomposition(const Domain& domain, MPI_Comm comm, const Cell3& grid);
+  Decomposition(const Domain& domain, MPI_Comm comm, const Cell3& grid)
+      : Decomposition(domain, comm, grid, equal_cuts(domain, grid)) {}
+  Decomposition(const Domain& domain, MPI_Comm comm, const Cell3& grid, const Cuts& cuts);
 
   int rank() const { return rank_; }
   int size() const { return size_; }
   bool alone() const { return size_ == 1; }
   MPI_Comm comm() const { return comm_; }
   const Cell3& grid() const { return grid_; }
+  const Cuts& cuts() const { return cuts_; }
   const Domain& domain() const { return domain_; }
   /// This rank's cells.
   const Block& cells() const { return cells_; }
@@ -80,6 +92,7 @@ class Decomposition {
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   Cell3 grid_{1, 1, 1};
+  Cuts cuts_;
   Block cells_;
 };
 

@@ -123,7 +123,9 @@ void HaloExchange::begin(int axis, const Populations& f, const EsotericPull& str
 }
 
 void HaloExchange::finish(int axis, Populations& f, const EsotericPull& stream) {
+  const double begin = MPI_Wtime();
   MPI_Waitall(4, requests_, MPI_STATUSES_IGNORE);
+  waited_ += MPI_Wtime() - begin;
   for (int high = 0; high < 2; ++high) {
     if (ranks_.neighbour(axis, high) < 0) continue;
     if (f.precision() == Precision::Double)

@@ -31,6 +31,8 @@ class HaloExchange {
   /// Sent in a step by this rank.
   std::size_t messages() const { return messages_; }
   std::size_t bytes() const { return bytes_; }
+  /// Seconds that this rank has waited for its neighbours so far.
+  double waited() const { return waited_; }
 
  private:
   /// Places of one pair of directions in a layer of cells.
@@ -50,6 +52,7 @@ class HaloExchange {
   std::vector<char> out_[2], in_[2];
   MPI_Request requests_[4];
   std::size_t messages_ = 0, bytes_ = 0;
+  double waited_ = 0.0;
 };
 
 }  // namespace lbm

@@ -145,6 +145,9 @@ constexpr Meaning kMeanings[] = {
     {"numerics.weight",
      "Weight B of operators that have one; auto takes viscous, in three dimensions balanced "
      "(solids.md)."},
+    {"numerics.blocks",
+     "Blocks of the ranks: of equal size or of equal work, as far as it is known at the start "
+     "(parallel.md)."},
     {"numerics.smagorinsky", "Constant S_c of the turbulence model; 0 leaves it out."},
     {"numerics.eddy_viscosity",
      "wale: it vanishes at walls and solids as it should (viscosity.md); S_c stays its strength."},

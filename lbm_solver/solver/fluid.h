@@ -166,6 +166,8 @@ class Fluid {
   Record save() const;
   void load(const Record& record);
 
+  /// Seconds that this rank has waited for its neighbours in its steps.
+  double waited() const { return halo_ ? halo_->waited() : 0.0; }
   /// Bytes that its parts take on all ranks: "populations" and, where covered cells are, "solids".
   /// Collective.
   std::map<std::string, double> bytes() const;

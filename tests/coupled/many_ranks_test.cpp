@@ -72,6 +72,9 @@ class ManyRanks : public testing::TestWithParam<std::string> {
         folder_.path(), 60.0);
     ASSERT_EQ(result.exit_code, 0) << result.output;
   }
+  std::string log(const std::string& out) const {
+    return test::read_file(folder_.path() + "/" + out + "/lbm.log");
+  }
   using Table = std::vector<std::vector<double>>;
   Table probes(const std::string& out) const {
     std::istringstream text(test::read_file(folder_.path() + "/" + out + "/probes.csv"));
@@ -122,11 +125,26 @@ TEST_P(ManyRanks, GoOnFromACheckpointOfOthers) {
   expect_alike(probes("one"), probes("many"));
 }
 
+// Blocks of equal work: at the start from the places in the scene, and after a restart from the
+// checkpoint.
+class BlocksOfEqualWork : public ManyRanks {};
+TEST_P(BlocksOfEqualWork, GiveTheSameTrajectories) {
+  run("one", 1, 1);
+  folder_.write("work.toml", "[numerics]\nblocks = \"equal_work\"\n");
+  run("many", 3, 2, "scene.toml work.toml --until 0.04");
+  EXPECT_NE(log("many").find("of the mean work for the busiest"), std::string::npos);
+  run("many", 2, 1, "scene.toml work.toml --restart");
+  EXPECT_NE(log("many").find("of the mean work for the busiest"), std::string::npos);
+  expect_alike(probes("one"), probes("many"));
+}
+
 // Heavier than the fluid, and so light that a virtual mass is at work.
 INSTANTIATE_TEST_SUITE_P(Densities, ManyRanks, testing::Values("2500.0", "400.0"),
                          [](const auto& info) {
                            return info.param == "400.0" ? std::string("light") : "heavy";
                          });
+
+INSTANTIATE_TEST_SUITE_P(Heavy, BlocksOfEqualWork, testing::Values("2500.0"));
 
 TEST(ManyFluidRanks, AloneWithFieldsAndPoints) {
   const test::TemporaryFolder folder;
@@ -209,10 +227,16 @@ TEST(ManyFluidRanks, AreRefusedWhereTheyCannotWork) {
             test::kLbm + " " + cases + arguments,
         folder.path(), 30.0);
   };
-  const JobResult scheme =
-      start("sphere_array/scene.toml " + cases + "sphere_array/variant-bounce_back.toml");
-  EXPECT_EQ(scheme.exit_code, 2) << scheme.output;
-  EXPECT_NE(scheme.output.find("works on one rank only"), std::string::npos) << scheme.output;
+  for (const char* name : {"bounce_back", "interpolated_bounce_back", "implicit_immersed_boundary",
+                           "spring_immersed_boundary"}) {
+    const std::string overlay =
+        folder.write("overlay.toml", "[numerics]\nscheme = \"" + std::string(name) + "\"\n");
+    const JobResult scheme = start("cylinder_array/scene.toml " + overlay);
+    EXPECT_EQ(scheme.exit_code, 2) << scheme.output;
+    EXPECT_NE(scheme.output.find("\"" + std::string(name) + "\" works on one rank only"),
+              std::string::npos)
+        << scheme.output;
+  }
   const JobResult grid = start("sphere_array/scene.toml --grid 3 1 1");
   EXPECT_EQ(grid.exit_code, 2) << grid.output;
   EXPECT_NE(grid.output.find("--grid"), std::string::npos) << grid.output;

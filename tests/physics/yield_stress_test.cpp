@@ -155,7 +155,7 @@ TEST(YieldNumber, OfASphereIsThatOfTheVariationalSolution) {
 }
 
 TEST(YieldNumber, Slow_OfASphereIsThatOfBeris) {
-  for (const auto& [diameter, box] : {std::pair{14.0, 44}, {20.0, 56}, {28.0, 64}}) {
+  for (const auto& [diameter, box] : {std::pair{14.0, 44}, {20.0, 56}}) {
     const double number = critical_yield_number(3, diameter, box);
     RecordProperty("number" + std::to_string(static_cast<int>(diameter)), std::to_string(number));
     EXPECT_NEAR(number / 0.0460, 1.0, 1.2 / diameter) << diameter;

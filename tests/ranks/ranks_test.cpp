@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <random>
 
 #include "lbm_solver/coupling/lubrication.h"
@@ -18,6 +19,7 @@
 #include "lbm_solver/io/checkpoint.h"
 #include "lbm_solver/io/field_writer.h"
 #include "lbm_solver/solver/fluid.h"
+#include "lbm_solver/solver/work.h"
 #include "tests/support/moving_obstacles.h"
 
 namespace {
@@ -136,6 +138,15 @@ std::vector<Cell3> grids(const Domain& d) {
   return all;
 }
 
+/// Equal blocks and, beside them, blocks of quite different sizes.
+std::vector<Cuts> cuts_of(const Domain& d, const Cell3& grid) {
+  Cuts uneven = equal_cuts(d, grid);
+  for (int a = 0; a < 3; ++a)
+    for (int p = 1; p < grid[a]; ++p)  // every block but the last is as thin as may be
+      uneven[a][p] = 2 * p;
+  return {equal_cuts(d, grid), uneven};
+}
+
 KernelChoice choice_for(const std::string& lattice, Precision precision) {
   return {.collision = CollisionOperator::Trt,
           .solid_term = "layered_resistance",
@@ -159,9 +170,12 @@ void expect_near(const std::vector<double>& a, const std::vector<double>& b, dou
 TEST(Ranks, SweepTheSameCellsAsOneAlone) {
   for (const Box& box : boxes())
     for (const Cell3& grid : grids(box.domain))
-      for (const Precision precision : {Precision::Double, Precision::Single}) {
-        const Decomposition ranks(box.domain, MPI_COMM_WORLD, grid);
-        SCOPED_TRACE(testing::Message() << box.lattice << ' ' << grid[0] << grid[1] << grid[2]);
+      for (const int way : {0, 1, 2}) {  // double, single, double with uneven blocks
+        const Precision precision = way == 1 ? Precision::Single : Precision::Double;
+        const Decomposition ranks(box.domain, MPI_COMM_WORLD, grid,
+                                  cuts_of(box.domain, grid)[way == 2]);
+        SCOPED_TRACE(testing::Message()
+                     << box.lattice << ' ' << grid[0] << grid[1] << grid[2] << ", " << way);
         const KernelChoice choice = choice_for(box.lattice, precision);
         const Limits limit = limits(precision, grid);
         Fluid part(ranks, choice), whole(box.domain, choice);
@@ -397,6 +411,62 @@ TEST(Ranks, AddEachLubricationForceOnce) {
       expect_near(sums, numbers(whole), 1e-14);
     }
   }
+}
+
+// A packing in the lower half of a box: the cuts move there, and all ranks agree on them.
+TEST(Ranks, ShareTheWorkOfAPacking) {
+  const Domain domain{48, 40, Side::Periodic, Side::Periodic, 96, Side::Wall};
+  const KernelChoice choice = choice_for("D3Q19", Precision::Double);
+  std::vector<Body> bodies;
+  for (int i = 0; i < 4 * 3 * 4; ++i)
+    bodies.push_back({i + 1,
+                      {6.0 + 12.0 * (i % 4), 7.0 + 13.0 * (i / 4 % 3), 6.0 + 12.0 * (i / 12)},
+                      5.5,
+                      {0.01, 0.0, 0.0},
+                      Spin()});
+  Fluid whole(domain, choice);
+  whole.place(bodies);
+  const LayerWork work = work_of(whole);
+  for (const auto& axis : work)
+    EXPECT_NEAR(std::accumulate(axis.begin(), axis.end(), 0.0),
+                std::accumulate(work[2].begin(), work[2].end(), 0.0), 1e-6);
+  EXPECT_EQ(work[2][90], 48.0 * 40.0);  // fluid alone
+  EXPECT_GT(work[2][40], 1.3 * 48.0 * 40.0);
+  for (const Cell3& grid : grids(domain)) {
+    const Decomposition ranks(domain, MPI_COMM_WORLD, grid);
+    Fluid part(ranks, choice);
+    part.place(bodies);
+    const LayerWork found = work_of(part);
+    for (int a = 0; a < 3 && grid[0] == 1; ++a) EXPECT_EQ(found[a], work[a]);
+    const Decomposition balanced = of_equal_work(ranks, found);
+    EXPECT_EQ(balanced.grid(), grid);
+    EXPECT_LE(imbalance(balanced, found), imbalance(ranks, found) + 1e-12);
+    if (grid[2] == world_size()) {  // as near as whole layers come
+      EXPECT_GT(imbalance(ranks, found), 1.15);
+      EXPECT_LT(imbalance(balanced, found), 1.1);
+      EXPECT_LT(balanced.cuts()[2][1], ranks.cuts()[2][1]);
+    }
+    const LayerWork kept = load_work(save(found), domain);
+    EXPECT_EQ(kept, found);
+    EXPECT_THROW(load_work(save(found), {48, 40, Side::Wall, Side::Wall, 95}),
+                 std::invalid_argument);
+  }
+}
+
+TEST(Ranks, CutLayersIntoEqualSums) {
+  using Cut = std::vector<int>;
+  const std::vector<double> even(10, 1.0), half{3, 3, 3, 3, 3, 1, 1, 1, 1, 1},
+      peak{0, 0, 0, 0, 90, 0, 0, 0, 0, 0};
+  EXPECT_EQ(cuts_of_equal_sums(even, 1), (Cut{0, 10}));
+  EXPECT_EQ(cuts_of_equal_sums(even, 2), (Cut{0, 5, 10}));
+  EXPECT_EQ(cuts_of_equal_sums(half, 2), (Cut{0, 3, 10}));        // 9 and 11 of 20
+  EXPECT_EQ(cuts_of_equal_sums(half, 4), (Cut{0, 2, 4, 6, 10}));  // no block thinner than 2 cells
+  EXPECT_EQ(cuts_of_equal_sums(peak, 5), (Cut{0, 2, 4, 6, 8, 10}));
+  const Domain box{8, 8, Side::Wall, Side::Wall, 10};
+  Cuts cuts = equal_cuts(box, {1, 1, world_size()});
+  cuts[2][1] = 1;
+  EXPECT_THROW(Decomposition(box, MPI_COMM_WORLD, {1, 1, world_size()}, cuts),
+               std::invalid_argument);
 }
 
 TEST(Ranks, CutZFirstAndNeverTooThin) {
