@@ -16,12 +16,11 @@
 
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/coupling/shown_cells.h"
-#include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/io/checkpoint.h"
 #include "lbm_solver/io/field_writer.h"
 #include "lbm_solver/solver/fluid.h"
 #include "lbm_solver/solver/work.h"
-#include "tests/support/meshes.h"
+#include "tests/support/moving_obstacles.h"
 
 namespace {
 
@@ -208,53 +207,6 @@ TEST(Ranks, SweepTheSameCellsAsOneAlone) {
       }
 }
 
-/// Obstacles that move, all of them over the faces between ranks: a box that turns and goes through
-/// the sides of the box, a ball that oscillates, and a drum around both.
-void add_movers(Fluid& fluid) {
-  const Domain& d = fluid.domain();
-  const bool flat = d.dimension() == 2;
-  const Vec3 middle(0.5 * d.nx + 0.2, 0.5 * d.ny - 0.3, flat ? 0.0 : 0.5 * d.nz + 0.1);
-  const double low = flat ? -1.0 : 4.2, high = flat ? 2.0 : 8.9;
-  const auto solid = [](TriangleMesh mesh) {
-    return MeshSolid{std::make_shared<const TriangleMesh>(std::move(mesh)), false};
-  };
-  fluid.add(solid(test::box_mesh({1.4, 2.3, low}, {7.1, 8.2, high})), [=](std::int64_t step) {
-    Pose pose;
-    pose.pivot = {4.0, 5.0, flat ? 0.0 : 6.0};
-    pose.axis = flat ? Vec3(0, 0, 1) : Vec3(Vec3(1, 2, 2) / 3.0);
-    pose.spin = 0.02 * pose.axis;
-    pose.angle = 0.02 * static_cast<double>(step);
-    pose.velocity = {-0.06, 0.04, flat ? 0.0 : 0.05};
-    pose.shift = static_cast<double>(step) * pose.velocity;
-    return pose;
-  });
-  const TriangleMesh round =
-      flat ? test::cylinder_mesh(middle - Vec3(0, 0, 99), middle + Vec3(0, 0, 99), 3.3, 40)
-           : test::sphere_mesh(middle, 3.3, 1);
-  fluid.add(solid(round), [=](std::int64_t step) {
-    Pose pose;
-    pose.pivot = middle;
-    pose.shift = Vec3(1.5 * std::sin(0.05 * static_cast<double>(step)), 0.0, 0.0);
-    pose.velocity = Vec3(0.075 * std::cos(0.05 * static_cast<double>(step)), 0.0, 0.0);
-    return pose;
-  });
-  if (!flat) return;
-  TriangleMesh inside =
-      test::cylinder_mesh(middle - Vec3(0, 0, 99), middle + Vec3(0, 0, 99), 8, 80);
-  for (auto& [a, b, c] : inside.triangles) std::swap(b, c);
-  const TriangleMesh outside =
-      test::cylinder_mesh(middle - Vec3(0, 0, 99), middle + Vec3(0, 0, 99), 10, 80);
-  fluid.add(
-      solid(test::together({outside, inside})),
-      [=](std::int64_t) {
-        Pose pose;
-        pose.pivot = middle;
-        pose.spin = {0.0, 0.0, 0.004};
-        return pose;
-      },
-      9.0, true);
-}
-
 /// What walls that move do does not depend on the ranks: cells, and loads to 1e-12 of the largest.
 TEST(Ranks, MoveTheSameWallsAsOneAlone) {
   const Side p = Side::Periodic, w = Side::Wall;
@@ -266,7 +218,7 @@ TEST(Ranks, MoveTheSameWallsAsOneAlone) {
       Fluid part(ranks, choice), whole(box.domain, choice);
       std::vector<Body> bodies = bodies_in(box.domain);
       for (Fluid* f : {&part, &whole}) {
-        add_movers(*f);
+        test::add_movers(*f);
         f->place(bodies);
         randomise(*f);
       }
@@ -316,7 +268,7 @@ TEST(Ranks, GoOnFromAStateOfAnotherGrid) {
   const auto make = [&](const Decomposition& ranks) {
     Fluid fluid(ranks, choice);
     add_patches(fluid);
-    add_movers(fluid);
+    test::add_movers(fluid);
     fluid.place(bodies_in(domain));
     return fluid;
   };
