@@ -59,7 +59,7 @@ to = [0.019, 0.006, 0.012]
 [numerics]
 cell = 0.001
 [run]
-end_time = 0.2
+end_time = 0.1
 [output]
 fields_every = 0.1
 viscosity = true
@@ -76,6 +76,7 @@ name = "line"
 kind = "line"
 from = [0.001, 0.002, 0.003]
 to = [0.022, 0.018, 0.015]
+count = 5
 [[sensor]]
 name = "side"
 kind = "side"
