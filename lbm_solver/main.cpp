@@ -64,6 +64,7 @@ void define(CLI::App& app, Options& o) {
                  "fluid.body_force")
       ->needs("--restart")
       ->expected(1)
+      ->allow_extra_args(false)  // what follows is the scene
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--record", o.record, "write the exchange to this trace file");
   app.add_option("--threads", o.threads, "threads (else OMP_NUM_THREADS, else 1)")

@@ -185,8 +185,24 @@ void Observers::load(const Record& record) {
 
 void Observers::write_particles(double time, const Particles& particles) {
   Particles::Everything all = shown(particles);
+  if (probes_ && !chosen_seen_) warn_of_absent(all.particles);
   keep_chosen(scene_.output.probe_particles, all);
   if (probes_) probes_->write(time, all.particles, all.loads);
+}
+
+/// Once: chosen particles that are not there when the first rows are written.
+void Observers::warn_of_absent(std::span<const protocol::Particle> particles) {
+  chosen_seen_ = true;
+  std::string absent;
+  for (const std::int64_t id : scene_.output.probe_particles)
+    if (std::ranges::none_of(particles, [id](const auto& p) { return p.state.id == id; }))
+      absent += fmt::format("{}{}", absent.empty() ? "" : ", ", id);
+  if (absent.empty()) return;
+  log_.say(
+      first_, "warning",
+      "output.probe_particles: no particle has the number {} so far ({} are there): probes.csv "
+      "has no rows of it; LIGGGHTS numbers from 1 on",
+      absent, particles.size());
 }
 
 void Observers::write_points(double time, Fluid& fluid) {
@@ -227,6 +243,7 @@ void Observers::guard(std::int64_t state, Fluid& fluid, const Particles* particl
     throw NumericsError(
         fmt::format("interval {}: the fluid is not finite at {}.{}", state, place, why()));
   last_speed_ = e.max_speed;
+  speed_known_ = speed_known_ || state > first_;
   max_speed_ = std::max(max_speed_, e.max_speed);
   mass_excess_ = e.mass_excess - fluid.mass_in();
   if (state == 0) first_mass_excess_ = mass_excess_;
@@ -310,13 +327,18 @@ void Observers::report_progress(std::int64_t state, const Particles* particles) 
   const double left = static_cast<double>(end_ - intervals_done_) * wall / made;
   const double updates =
       made * plan_.fluid_steps * plan_.domain.nx * plan_.domain.ny * plan_.domain.nz;
-  log_.progress(done,
-                fmt::format("{:>9} | progress | t = {:.4g} s, {:3.0f} %, {:.0f} million "
-                            "updates/s, {} left, Ma {:.3f}, max |u| {:.4g} m/s",
-                            state, time_of(intervals_done_), 100.0 * done, updates / wall * 1e-6,
-                            duration_text(left), last_speed_ * std::numbers::sqrt3,
-                            last_speed_ * plan_.units.velocity()) +
-                    solid_text(particles));
+  log_.progress(done, fmt::format("{:>9} | progress | t = {:.4g} s, {:3.0f} %, {:.0f} million "
+                                  "updates/s, {} left{}",
+                                  state, time_of(intervals_done_), 100.0 * done,
+                                  updates / wall * 1e-6, duration_text(left), speed_text()) +
+                          solid_text(particles));
+}
+
+/// Of the last look at the whole field; before the first nothing is known.
+std::string Observers::speed_text() const {
+  if (!speed_known_) return {};
+  return fmt::format(", Ma {:.3f}, max |u| {:.4g} m/s", last_speed_ * std::numbers::sqrt3,
+                     last_speed_ * plan_.units.velocity());
 }
 
 Summary Observers::summary(double wall_seconds) const {

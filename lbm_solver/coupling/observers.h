@@ -97,9 +97,11 @@ class Observers {
   void add_bonds(const std::vector<protocol::Particle>& particles,
                  const std::vector<protocol::Bond>& bonds, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
+  void warn_of_absent(std::span<const protocol::Particle> particles);
   void write_points(double time, Fluid& fluid);
   void write_particles(double time, const Particles& particles);
   void report_viscosity(std::int64_t state, const Fluid& fluid);
+  std::string speed_text() const;
   void report_progress(std::int64_t state, const Particles* particles);
 
   const Scene& scene_;
@@ -121,6 +123,8 @@ class Observers {
   bool fresh_ = true;                      // it does not go on from a checkpoint
   std::int64_t first_, end_, guard_every_, intervals_done_ = 0;
   double max_speed_ = 0.0, last_speed_ = 0.0;  // of the fluid, lattice units
+  bool speed_known_ = false;                   // last_speed_ is of this run
+  bool chosen_seen_ = false;                   // the chosen particles have been looked for
   SpeedRecord speeds_;
   bool warned_ = false;                                 // of a speed above kWarnSpeed
   std::optional<ViscosityUse> viscosity_;               // at the end, where it varies

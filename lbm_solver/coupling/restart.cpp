@@ -162,7 +162,7 @@ std::optional<Restart> find_restart(const Scene& scene, const std::string& folde
     try {
       Restart restart = read_pair(scene, folder, before, options);
       restart.earlier = true;
-      restart.remark = problem;
+      restart.remark = problem.substr(0, problem.rfind("; "));  // its cure has been taken
       return restart;
     } catch (const InputError& second) {
       throw InputError(

@@ -123,9 +123,12 @@ std::vector<std::uint64_t> shape_in(const std::string& text) {
   std::vector<std::uint64_t> shape;
   std::string number;
   for (const char c : text.substr(0, text.find(')') + 1)) {
-    if (c >= '0' && c <= '9') number += c;
+    if ((c >= '0' && c <= '9') || c == '-') number += c;
     if (c != ',' && c != ')') continue;
-    if (const auto n = protocol::to_number<std::uint64_t>(number)) shape.push_back(*n);
+    if (const auto n = protocol::to_number<std::uint64_t>(number))
+      shape.push_back(*n);
+    else if (!number.empty())
+      refuse("has a size of " + number + " in its header", "save it again with numpy.save");
     number.clear();
   }
   return shape;
@@ -142,11 +145,12 @@ GreyImage read_npy(const std::string& path) {
   const std::size_t begin = kPrefix + (old ? 0 : 2);
   if (length > start.size() - begin) refuse("has a broken header", "save it again with numpy.save");
   const std::string header(&start[begin], length);
-  const std::string descr = after(header, "descr").substr(1, 3);
+  const std::string quoted = after(header, "descr").substr(1);
+  const std::string descr = quoted.substr(0, quoted.find_first_of("'\""));
   if (after(header, "fortran_order").starts_with("True"))
     refuse("is stored in Fortran's order", "save numpy.ascontiguousarray of it");
   const auto type = std::find_if(kTypes.begin(), kTypes.end(), [&](const NumberType& known) {
-    return descr.substr(1) == known.numpy;
+    return !descr.empty() && descr.substr(1) == known.numpy;
   });
   if (type == kTypes.end())
     refuse(fmt::format("has numbers of type '{}'", descr),

@@ -3,12 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <vector>
 
+#include "lbm_solver/io/text_table.h"
 #include "protocol/program/checksum.h"
 #include "protocol/program/input_file.h"
 
@@ -18,25 +16,6 @@ namespace {
 using Kind = MotionScene::Kind;
 
 constexpr std::uintmax_t kLargestTable = 100'000'000;  // bytes
-
-/// The numbers of a line, or nothing where it is none of so many finite ones.
-std::vector<double> numbers_of(const std::string& line, std::size_t count) {
-  std::vector<double> numbers;
-  std::istringstream text(line);
-  for (std::string part; std::getline(text, part, ',');) {
-    std::size_t end = 0;
-    double value = 0.0;
-    try {
-      value = std::stod(part, &end);
-    } catch (const std::exception&) {
-      return {};
-    }
-    while (end < part.size() && (part[end] == ' ' || part[end] == '\r')) ++end;
-    if (end != part.size() || !std::isfinite(value)) return {};
-    numbers.push_back(value);
-  }
-  return numbers.size() == count ? numbers : std::vector<double>();
-}
 
 /// Lines `time,x,y[,z][,angle]` [s, m, rad].
 void read_table(TableReader& t, const std::string& scene_file, int dimension, MotionScene& m) {
@@ -51,20 +30,20 @@ void read_table(TableReader& t, const std::string& scene_file, int dimension, Mo
   if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
     fail(problem, "put a table " + turning + " beside the scene");
   t.note("motion_table_content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  if (line != plain && line != turning) fail("begins with '" + line.substr(0, 60) + "'", remedy);
-  const bool turns = line == turning;
+  TextTable file(path);
+  file.next();
+  if (file.line() != plain && file.line() != turning)
+    fail("begins with '" + file.shown() + "'", remedy);
+  const bool turns = file.line() == turning;
   const auto d = static_cast<std::size_t>(dimension);
-  for (int number = 2; std::getline(file, line); ++number) {
-    const std::vector<double> v = numbers_of(line, 1 + d + (turns ? 1 : 0));
+  while (file.next()) {
+    const std::vector<double> v = file.numbers(1 + d + (turns ? 1 : 0));
     if (v.empty())
-      fail(fmt::format("line {}: '{}' is not {} finite numbers", number, line.substr(0, 60),
+      fail(fmt::format("line {}: '{}' is not {} finite numbers", file.number(), file.shown(),
                        1 + d + (turns ? 1 : 0)),
            remedy);
     if (!m.times.empty() && v[0] <= m.times.back())
-      fail(fmt::format("line {}: time {:.6g} s does not come after {:.6g} s", number, v[0],
+      fail(fmt::format("line {}: time {:.6g} s does not come after {:.6g} s", file.number(), v[0],
                        m.times.back()),
            "sort the lines by time, each time once");
     m.times.push_back(v[0]);

@@ -72,7 +72,7 @@ struct PngReader {
     png_read_info(png, info);
     return true;
   }
-  /// Reads all rows; false where the file is broken.
+  /// Reads all rows, to the file's end; false where the file is broken.
   bool read(png_bytep* rows, bool narrow) {
     if (setjmp(png_jmpbuf(png))) return false;
     if (narrow) png_set_expand_gray_1_2_4_to_8(png);
@@ -80,6 +80,7 @@ struct PngReader {
     png_set_interlace_handling(png);
     png_read_update_info(png, info);
     png_read_image(png, rows);
+    png_read_end(png, nullptr);
     return true;
   }
 };

@@ -4,15 +4,37 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
+#include <optional>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
 #include "lbm_solver/base/errors.h"
+#include "protocol/wire/numbers.h"
 
 namespace lbm {
+namespace {
+
+/// Time of a row that has a number or nothing for every column.
+std::optional<double> time_of(const std::string& line, const std::string& columns) {
+  std::optional<double> time;
+  std::size_t fields = 0;
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1, ++fields) {
+    end = line.find(',', begin);
+    const std::string_view field = std::string_view(line).substr(begin, end - begin);
+    const auto number = protocol::to_number<double>(field);
+    if (!number && (fields == 0 || !field.empty()) && field != "inf" && field != "-inf")
+      return std::nullopt;
+    if (fields == 0) time = number;
+  }
+  const auto due = static_cast<std::size_t>(std::ranges::count(columns, ',')) + 1;
+  return fields == due ? time : std::nullopt;
+}
+
+}  // namespace
 
 CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double keep_until)
     : path_(path) {
@@ -20,9 +42,17 @@ CsvWriter::CsvWriter(const std::string& path, const std::string& columns, double
   if (keep_until > 0.0) {
     std::ifstream before(path);
     std::string line;
-    std::getline(before, line);                          // the columns
-    while (std::getline(before, line) && !before.eof())  // not a line that a kill has cut off
-      if (std::strtod(line.c_str(), nullptr) < keep_until) kept.push_back(line);
+    std::getline(before, line);  // the columns
+    for (int number = 2; std::getline(before, line) && !before.eof(); ++number) {
+      // a line that a kill has cut off is the last, and has no end
+      const std::optional<double> time = time_of(line, columns);
+      if (!time)
+        throw InputError(fmt::format("{}: line {}", path, number),
+                         "is damaged: it is no row of this table",
+                         "mend or delete the line, or move the table away: it then begins with "
+                         "the restart");
+      if (*time < keep_until) kept.push_back(line);
+    }
   }
   // under another name, or a kill at this moment would lose the lines of the run before
   const std::string part = path + ".part";

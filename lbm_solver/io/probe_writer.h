@@ -18,6 +18,7 @@ class CsvWriter {
   /// @param path        overwritten, but for the lines kept
   /// @param columns     first line, each with its unit: "time [s],x [m]"; the first is the time
   /// @param keep_until  a run that goes on keeps the lines before this time
+  /// @throws InputError  one of the lines that are there is no row of the table
   CsvWriter(const std::string& path, const std::string& columns, double keep_until = 0.0);
   void row(std::span<const double> values);
   void row(std::initializer_list<double> values) {

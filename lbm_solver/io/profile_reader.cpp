@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
+#include "lbm_solver/io/text_table.h"
 #include "protocol/program/checksum.h"
 #include "protocol/program/input_file.h"
 
@@ -34,26 +32,21 @@ std::vector<int> axes_of(const std::string& head, SideName side, int dimension) 
   return {};
 }
 
-Lines read_lines(std::ifstream& file, std::vector<int> axes, const auto& fail) {
+Lines read_lines(TextTable& file, std::vector<int> axes, const auto& fail) {
   Lines lines{std::move(axes), {}};
   const std::size_t places = lines.axes.size();
-  std::string line;
-  for (int number = 2; std::getline(file, line); ++number) {
-    double v[3] = {0.0, 0.0, 0.0};
-    char rest = 0;
-    const int read = places == 1
-                         ? std::sscanf(line.c_str(), "%lf,%lf%c", v, v + 1, &rest)
-                         : std::sscanf(line.c_str(), "%lf,%lf,%lf%c", v, v + 1, v + 2, &rest);
-    if (read != static_cast<int>(places) + 1 || !std::isfinite(v[0] + v[1] + v[2]))
-      fail(fmt::format("line {}: '{}' is not {} finite numbers", number, line.substr(0, 60),
+  while (file.next()) {
+    const std::vector<double> v = file.numbers(places + 1);
+    if (v.empty())
+      fail(fmt::format("line {}: '{}' is not {} finite numbers", file.number(), file.shown(),
                        places + 1),
            "give a place on each axis [m] and the factor");
     std::array<double, 2> at{0.0, 0.0};
     for (std::size_t k = 0; k < places; ++k) at[lines.axes[k]] = v[k];
     if (!lines.factors.emplace(at, v[places]).second)
-      fail(
-          fmt::format("line {}: '{}' has the place of an earlier line", number, line.substr(0, 60)),
-          "give each place once");
+      fail(fmt::format("line {}: '{}' has the place of an earlier line", file.number(),
+                       file.shown()),
+           "give each place once");
   }
   return lines;
 }
@@ -98,13 +91,12 @@ ProfileScene read_profile(TableReader& t, SideName side, int dimension,
     fail(problem, "put a table of factors beside the scene");
   t.note(std::string(kKey) + "_content",
          fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
-  std::ifstream file(path);
-  std::string head;
-  std::getline(file, head);
+  TextTable file(path);
+  file.next();
   const std::string along(1, "xyz"[axis_along(side, 0)]);
-  const std::vector<int> axes = axes_of(head, side, dimension);
+  const std::vector<int> axes = axes_of(file.line(), side, dimension);
   if (axes.empty())
-    fail("begins with '" + head.substr(0, 60) + "'",
+    fail("begins with '" + file.shown() + "'",
          dimension == 2 ? "the first line is " + along + ",factor (in m and 1)"
                         : fmt::format("the first line is {0},factor, {1},factor or {0},{1},factor "
                                       "(in m and 1)",

@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <vector>
 
+#include "lbm_solver/io/text_table.h"
 #include "protocol/program/checksum.h"
 #include "protocol/program/input_file.h"
 
@@ -33,20 +32,17 @@ TimeTableScene read_time_table(TableReader& t, const std::string& key, const std
   if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
     fail(problem, "put a table `time,factor` beside the scene");
   t.note(key + "_content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  if (line != "time,factor")
-    fail("begins with '" + line.substr(0, 60) + "'", "the first line is time,factor (in s and 1)");
-  for (int number = 2; std::getline(file, line); ++number) {
-    double time = 0.0, factor = 0.0;
-    char rest = 0;
-    if (std::sscanf(line.c_str(), "%lf,%lf%c", &time, &factor, &rest) != 2 ||
-        !std::isfinite(time + factor))
-      fail(fmt::format("line {}: '{}' is not two finite numbers", number, line.substr(0, 60)),
+  TextTable file(path);
+  if (!file.next() || file.line() != "time,factor")
+    fail("begins with '" + file.shown() + "'", "the first line is time,factor (in s and 1)");
+  while (file.next()) {
+    const std::vector<double> v = file.numbers(2);
+    if (v.empty())
+      fail(fmt::format("line {}: '{}' is not two finite numbers", file.number(), file.shown()),
            "give time,factor");
+    const double time = v[0], factor = v[1];
     if (!table.times.empty() && time <= table.times.back())
-      fail(fmt::format("line {}: time {:.6g} s does not come after {:.6g} s", number, time,
+      fail(fmt::format("line {}: time {:.6g} s does not come after {:.6g} s", file.number(), time,
                        table.times.back()),
            "sort the lines by time, each time once");
     table.times.push_back(time);

@@ -129,6 +129,23 @@ double reach_of(const ObstacleScene& o) {
   return reach;
 }
 
+std::string fastest_part(const ObstacleScene& o, double end) {
+  const MotionScene& m = *o.motion;
+  const double reach = reach_of(o);
+  double largest = 0.0;
+  std::string part;
+  for (std::size_t k = 1; k < m.times.size() && m.times[k - 1] < end; ++k) {
+    const double way =
+        (m.shifts[k] - m.shifts[k - 1]).norm() + std::abs(m.angles[k] - m.angles[k - 1]) * reach;
+    const double speed = way / (m.times[k] - m.times[k - 1]);
+    if (speed <= largest) continue;
+    largest = speed;
+    part = fmt::format(" in lines {} and {} of its motion_table ({:.6g} and {:.6g} s)", k + 1,
+                       k + 2, m.times[k - 1], m.times[k]);
+  }
+  return part;
+}
+
 void check_motions(const Scene& s, Plan& plan) {
   for (std::size_t i = 0; i < s.obstacles.size(); ++i)
     if (s.obstacles[i].motion) check_motion(s, s.obstacles[i], i + 1, plan);

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <string>
+
 #include "lbm_solver/solver/plan.h"
 
 namespace lbm {
 
 /// How far an obstacle that moves reaches from the axis about which it turns [m].
 double reach_of(const ObstacleScene& obstacle);
+
+/// Where a table moves an obstacle fastest, as a message says it; empty for other motions.
+/// @param end  of the run [s]
+std::string fastest_part(const ObstacleScene& obstacle, double end);
 
 /// Refuses a motion that one of the programs cannot follow, and warns of what hardly is meant: a
 /// table that does not cover the run, a way out of the box, a surface that does not move along

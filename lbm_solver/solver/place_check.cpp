@@ -111,6 +111,10 @@ void check_sensors(const Scene& s) {
                        "each has a table of its own: choose another name");
     check_inside(s, sensor.from, what);
     check_inside(s, sensor.to, what);
+    if (sensor.kind == SensorScene::Kind::Line && sensor.from == sensor.to)
+      throw InputError(s.file + ": " + what,
+                       "is a line of no length: from and to are " + place_text(s, sensor.from),
+                       "give its two ends, or output.points for a place");
     for (int k = 0; k < s.box.dimension; ++k)
       if (sensor.kind == SensorScene::Kind::Plane && k != sensor.axis &&
           !(sensor.from[k] < sensor.to[k]))
@@ -121,10 +125,9 @@ void check_sensors(const Scene& s) {
   }
   const auto& average = s.output.average;
   if (average && average->from >= s.end_time)
-    throw InputError(
-        s.file + ": average.from",
-        fmt::format("= {:.6g} s is not before the end at {:.6g} s", average->from, s.end_time),
-        "average from an earlier time on");
+    throw InputError(fmt::format("{}: average.from = {:.6g} s is not before the end at {:.6g} s",
+                                 s.file, average->from, s.end_time),
+                     "average from an earlier time on");
 }
 
 void check_obstacle(const Scene& s, const ObstacleScene& o) {

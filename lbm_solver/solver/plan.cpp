@@ -327,6 +327,12 @@ void choose_substeps(const Scene& s, Plan& plan) {
   } else {
     plan.substep_limit = "no contact_stiffness given";
   }
+  if (constexpr double most = 1e6; !(needed <= most))
+    throw InputError(
+        fmt::format("{}: particles.contact_stiffness = {:.4g} N/m", s.file, *p.contact_stiffness),
+        fmt::format("needs {:.3g} solid steps a coupling interval of {:.4g} s, more than {:.0e}",
+                    needed, plan.interval(), most),
+        "take softer contacts: some 1e5 N/m keep grains of millimetres apart");
   plan.substeps = c.substeps.value_or(static_cast<int>(std::max(1.0, needed)));
   if (c.substeps) plan.substep_limit = "given by the scene; " + plan.substep_limit;
   // 5 times the recommended step is 0.5 √(m/k), a quarter of the stability limit 2 √(m/k)

@@ -5,27 +5,51 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/boundary/patch.h"
 #include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/solid_term.h"
+#include "lbm_solver/solver/coupled_check.h"
 #include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/motion_check.h"
 #include "lbm_solver/solver/place_check.h"
+#include "lbm_solver/solver/table_check.h"
 
 namespace lbm {
 namespace {
 
-constexpr double kDeepRest = 0.05, kDeepHit = 1.0;  // overlap over radius that goes unremarked
-constexpr double kManyBytes = 20e9;                 // of fields
-constexpr double kThick = 0.1;                      // m²/s: more than any honey
+constexpr double kManyBytes = 20e9;     // of fields
 constexpr double kMuchFaster = 30.0;    // than velocity_scale: grains resist, estimates are rough
 constexpr double kLargeGrain = 0.2;     // m, in a coupled scene
 constexpr double kLargeReynolds = 1e5;  // of a cell
 constexpr double kThinObstacle = 4.0;   // cells
 constexpr double kStepsAPeriod = 20.0;  // of an oscillation
 constexpr double kTightLayer = 3.0;     // cells
+constexpr std::size_t kSaid = 5;        // of many warnings of a kind
+
+/// Warnings of a kind: the first few are said, the others counted.
+class Few {
+ public:
+  Few(Plan& plan, std::string others) : plan_(plan), others_(std::move(others)) {}
+  ~Few() {
+    if (count_ > kSaid)
+      plan_.warnings.push_back(fmt::format("… and {} more {}", count_ - kSaid, others_));
+  }
+  Few(const Few&) = delete;
+  Few& operator=(const Few&) = delete;
+  /// @param text  gives the warning; called where it is said
+  void add(const auto& text) {
+    if (++count_ <= kSaid) plan_.warnings.push_back(text());
+  }
+
+ private:
+  Plan& plan_;
+  std::string others_;
+  std::size_t count_ = 0;
+};
 
 /// Largest speed that the scene itself gives [m/s], and to what.
 std::pair<double, std::string> given_speed(const Scene& s) {
@@ -40,9 +64,12 @@ std::pair<double, std::string> given_speed(const Scene& s) {
     look(b.velocity.norm() * b.table.largest() * b.profile.largest(), "boundary.velocity");
     look(opening_speed(s, b), "boundary.flow_rate");
   }
-  for (const ObstacleScene& o : s.obstacles) {
-    look(0.5 * o.diameter * o.spin.norm(), "an obstacle's spin");
-    if (o.motion) look(largest_speed(*o.motion, reach_of(o), s.end_time), "an obstacle's motion");
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
+    const ObstacleScene& o = s.obstacles[i];
+    look(0.5 * o.diameter * o.spin.norm(), fmt::format("the {}. obstacle's spin", i + 1));
+    if (!o.motion) continue;
+    look(largest_speed(*o.motion, reach_of(o), s.end_time),
+         fmt::format("the {}. obstacle's motion{}", i + 1, fastest_part(o, s.end_time)));
   }
   look(mean_speed(s), "fluid.flow_rate");
   return largest;
@@ -54,7 +81,8 @@ void check_speed(const Scene& s, Plan& plan) {
     throw InputError(
         fmt::format("{}: {} makes {:.4g} m/s, {:.3g} of C = Δx/Δt; a run stops at {}", s.file, what,
                     speed, speed / plan.lattice_speed, kStopSpeed),
-        fmt::format("take velocity_scale = {:.4g}, the largest speed to expect", speed));
+        fmt::format("correct it, or take velocity_scale = {:.4g}, the largest speed to expect",
+                    speed));
   if (speed > 1.001 * s.fluid.velocity_scale && speed > kWarnSpeed * plan.lattice_speed)
     plan.warnings.push_back(
         fmt::format("{} makes {:.4g} m/s, more than velocity_scale = {:.4g}: compressibility error",
@@ -161,28 +189,38 @@ void check_idle_keys(const Scene& s, Plan& plan) {
                                         s.numerics.weight, plan.kernel.solid_term));
 }
 
-/// A body force of its own carries the particles' weight along an axis.
-bool carried(const Scene& s, int axis) {
-  return (s.coupling && s.coupling->carry_weight) || (s.fluid.flow && s.fluid.flow->axis == axis);
+/// Least width of an obstacle that the flow goes around [m]; nothing where it has none.
+std::optional<double> width_of(const Scene& s, const ObstacleScene& o) {
+  if (o.grain || o.hollow) return std::nullopt;
+  if (o.round) return o.diameter;
+  if (!o.mesh || o.mesh->hollow || o.mesh->thickness > 0.0) return std::nullopt;
+  const auto [low, high] = bounds(*o.mesh->surface);
+  double least = high[0] - low[0];
+  for (int k = 1; k < s.box.dimension; ++k) least = std::min(least, high[k] - low[k]);
+  return least;
 }
 
-/// Gravity that points upwards, or that nothing holds.
-void check_gravity(const Scene& s, Plan& plan) {
-  const int up = s.box.dimension - 1;
-  const Vec3& g = s.fluid.gravity;
-  if (g[up] > 0.0)
-    plan.warnings.push_back(
-        fmt::format("fluid.gravity points upwards (+{}): is its sign right?", "xyz"[up]));
-  const bool neutral =
-      s.particles->density.lo == s.fluid.density && s.particles->density.hi == s.fluid.density;
-  for (int k = 0; k < s.box.dimension && !neutral; ++k)
-    if (g[k] != 0.0 && s.box.sides[k] == SideKind::Periodic && s.fluid.body_force[k] == 0.0 &&
-        !carried(s, k) && s.box.pressure_jump[k] == 0.0)
-      plan.warnings.push_back(
-          fmt::format("fluid.gravity acts along {0}, where the box is periodic and nothing holds "
-                      "the particles: they take the fluid along, faster and faster; take "
-                      "sides_{0} = \"wall\", or a fluid.body_force that carries their weight",
-                      "xyz"[k]));
+/// Obstacles of a few cells.
+void check_widths(const Scene& s, Plan& plan) {
+  Few thin(plan, "obstacles whose flow is not resolved");
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
+    const ObstacleScene& o = s.obstacles[i];
+    if (const double cells = o.mesh ? o.mesh->thickness / plan.units.dx : 0.0;
+        cells > 0.0 && cells < kTightLayer)
+      plan.warnings.push_back(fmt::format(
+          "obstacle.thickness = {:.4g} m is {:.3g} cells: fluid seeps through a layer of "
+          "less than {}, where no cell is covered whole",
+          o.mesh->thickness, cells, kTightLayer));
+    const auto width = width_of(s, o);
+    if (!width || *width >= kThinObstacle * plan.units.dx * (1.0 - 1e-9)) continue;
+    thin.add([&] {
+      return fmt::format(
+          "{} is {:.2g} cells wide: the flow past it is not resolved; take a finer cell{}",
+          o.round ? "the obstacle at " + place_text(s, o.centre)
+                  : fmt::format("the {}. obstacle", i + 1),
+          *width / plan.units.dx, *width < plan.units.dx && o.mesh ? ", or look at its scale" : "");
+    });
+  }
 }
 
 /// Lengths that look like millimetres taken for metres, cells too coarse for anything.
@@ -196,65 +234,38 @@ void check_sizes(const Scene& s, Plan& plan) {
         fmt::format("Re_h = velocity_scale × cell / viscosity = {:.2g}: a cell sees a turbulent "
                     "flow of its own; are lengths in metres and the viscosity in m²/s?",
                     plan.reynolds_cell));
-  for (const ObstacleScene& o : s.obstacles) {
-    if (const double cells = o.mesh ? o.mesh->thickness / plan.units.dx : 0.0;
-        cells > 0.0 && cells < kTightLayer)
-      plan.warnings.push_back(fmt::format(
-          "obstacle.thickness = {:.4g} m is {:.3g} cells: fluid seeps through a layer of "
-          "less than {}, where no cell is covered whole",
-          o.mesh->thickness, cells, kTightLayer));
-    double width = o.diameter;
-    if (o.block()) width = (o.to - o.from).head(s.box.dimension).minCoeff();
-    if (o.grain || o.hollow || !o.round || width >= kThinObstacle * plan.units.dx) continue;
-    plan.warnings.push_back(
-        fmt::format("the obstacle at {} is {:.2g} cells wide: the flow past it is not resolved; "
-                    "take a finer cell",
-                    place_text(s, o.centre), width / plan.units.dx));
-  }
+  check_widths(s, plan);
 }
 
 /// Obstacles that lie in each other.
 void check_overlaps(const Scene& s, Plan& plan) {
+  std::vector<std::size_t> solid;  // what can lie in another
   for (std::size_t i = 0; i < s.obstacles.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
+    if (!s.obstacles[i].grain && !s.obstacles[i].hollow) solid.push_back(i);
+  Few overlaps(plan, "pairs of obstacles that lie in each other");
+  for (const std::size_t i : solid)
+    for (const std::size_t j : solid) {
+      if (j >= i) break;
       const ObstacleScene &a = s.obstacles[j], &b = s.obstacles[i];
-      if (a.grain || b.grain || a.hollow || b.hollow || !b.round) continue;
-      if (depth_in(s, a, b.centre, 0.5 * b.diameter) <= kTouch) continue;
-      plan.warnings.push_back(
-          fmt::format("the {}. obstacle lies partly in the {}.: the load on "
-                      "cells that both cover is shared between them",
-                      i + 1, j + 1));
+      if (!b.round || depth_in(s, a, b.centre, 0.5 * b.diameter) <= kTouch) continue;
+      overlaps.add([&] {
+        return fmt::format(
+            "the {}. obstacle lies partly in the {}.: the load on cells that both cover is shared "
+            "between them",
+            i + 1, j + 1);
+      });
     }
 }
 
-void check_viscosity(const Scene& s, Plan& plan) {
-  if (s.fluid.viscosity > kThick)
-    plan.warnings.push_back(fmt::format(
-        "fluid.kinematic_viscosity = {:.3g} m²/s is unusually large for a liquid (water: 1e-6); "
-        "kinematic viscosity is in m²/s",
-        s.fluid.viscosity));
-}
-
-void check_contacts(const Scene& s, Plan& plan) {
-  const ParticleScene& p = *s.particles;
-  if (!p.contact_stiffness) return;
-  const double r = 0.5 * p.diameter.hi, volume = particle_volume(s, p.diameter.hi);
-  const double weight =
-      std::max(0.0, p.density.hi - s.fluid.density) * volume * s.fluid.gravity.norm();
-  // In parts of the radius: of one particle on another, and where one comes with velocity_scale.
-  const double resting = weight / *p.contact_stiffness / r;
-  const double hitting =
-      s.fluid.velocity_scale * std::sqrt(p.density.hi * volume / *p.contact_stiffness) / r;
-  if (resting > kDeepRest)
-    plan.warnings.push_back(
-        fmt::format("particles.contact_stiffness is soft: under its weight alone a particle sinks "
-                    "into another by {:.3g} of its radius; {:.2g} N/m would keep that to {}",
-                    resting, *p.contact_stiffness * resting / kDeepRest, kDeepRest));
-  else if (hitting > kDeepHit)
-    plan.warnings.push_back(
-        fmt::format("particles.contact_stiffness is soft: a particle with velocity_scale goes "
-                    "through another ({:.3g} of its radius); {:.2g} N/m would stop it at {}",
-                    hitting, *p.contact_stiffness * hitting * hitting, kDeepHit));
+/// Sensors that find nothing to measure.
+void check_periodic_sensors(const Scene& s, Plan& plan) {
+  for (const SensorScene& sensor : s.output.sensors)
+    if (sensor.kind == SensorScene::Kind::Side &&
+        s.box.sides[axis_of(sensor.side)] == SideKind::Periodic)
+      plan.warnings.push_back(
+          fmt::format("sensor \"{}\": its side is periodic, where no wall takes a force: its "
+                      "force stays 0; a plane measures the flow",
+                      sensor.name));
 }
 
 void check_output(const Scene& s, Plan& plan) {
@@ -301,9 +312,9 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_idle_keys(s, plan);
   check_overlaps(s, plan);
   check_starts_in_shapes(s, plan);
-  if (s.coupling) check_gravity(s, plan);
-  if (s.coupling) check_viscosity(s, plan);
-  if (s.coupling) check_contacts(s, plan);
+  check_tables(s, plan);
+  check_periodic_sensors(s, plan);
+  if (s.coupling) check_coupled(s, plan);
   check_output(s, plan);
 }
 

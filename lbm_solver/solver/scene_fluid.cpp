@@ -233,6 +233,21 @@ void add_shape(const Scene& s, const Plan& p, const Geometry& shape, const Obsta
                    "turn it outwards, or leave the inner shell out");
 }
 
+/// Refuses solids that leave nothing to compute. Collective.
+void expect_fluid(const Scene& s, const Fluid& fluid) {
+  constexpr double kWhole = 1.0 - 1e-6;
+  const Cell3& n = fluid.cells().size;
+  bool any = false;
+  for (int z = 0; z < n[2] && !any; ++z)
+    for (int y = 0; y < n[1] && !any; ++y)
+      for (int x = 0; x < n[0] && !any; ++x) any = fluid.solid_fraction(x, y, z) < kWhole;
+  if (fluid.ranks().max(any ? 1.0 : 0.0) > 0.0) return;
+  throw InputError(s.file + ": obstacle",
+                   "covers the whole box with the others: no cell is left to the fluid",
+                   "compare sizes and places, in metres, with the box's; of an image look at "
+                   "threshold and solid, of a mesh at its scale");
+}
+
 }  // namespace
 
 Pose pose_in_cells(const Units& units, const MotionScene& motion, std::int64_t step) {
@@ -300,7 +315,10 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
   if (force.changes_after(0)) fluid.vary_body_force(force);
   if (s.fluid.flow) fluid.hold_flow(flow_control(s, p));
   if (const auto control = pressure_control(s, p)) fluid.hold_flow(*control);
-  if (fluid.has_solids()) fluid.place(obstacle_bodies(s, p));
+  if (fluid.has_solids()) {
+    fluid.place(obstacle_bodies(s, p));
+    expect_fluid(s, fluid);
+  }
   const bool moving =
       p.kernel.solid_term != "none" &&
       std::ranges::any_of(s.obstacles, [](const auto& o) { return o.motion.has_value(); });

@@ -49,17 +49,16 @@ void check_bounds(const Scene& s, const ViscosityLaw& law, Plan& plan) {
                     law.nu_min(), law.nu_max()),
         "give nu_min < nu_max");
   if (high > kLargestTau)
-    throw InputError(
-        s.file + ": fluid.viscosity.nu_max",
-        fmt::format("= {:.4g} m²/s has τ = {:.4g}, above {}: the stress there would follow "
-                    "the flow too slowly",
-                    law.nu_max(), high, kLargestTau),
-        fmt::format("take at most {:.3g} m²/s, or a smaller numerics.time_step",
-                    (kLargestTau - 0.5) * a_tau));
+    throw InputError(fmt::format("{}: fluid.viscosity.nu_max = {:.4g} m²/s has τ = {:.4g}, above "
+                                 "{}: the stress there would follow "
+                                 "the flow too slowly",
+                                 s.file, law.nu_max(), high, kLargestTau),
+                     fmt::format("take at most {:.3g} m²/s, or a smaller numerics.time_step",
+                                 (kLargestTau - 0.5) * a_tau));
   if (low - 0.5 < 1e-6)
-    throw InputError(s.file + ": fluid.viscosity.nu_min",
-                     fmt::format("= {:.4g} m²/s has τ - ½ = {:.2g}, too small for round-off",
-                                 law.nu_min(), low - 0.5),
+    throw InputError(fmt::format("{}: fluid.viscosity.nu_min = {:.4g} m²/s has τ - ½ = {:.2g}, too "
+                                 "small for round-off",
+                                 s.file, law.nu_min(), low - 0.5),
                      fmt::format("take at least {:.3g} m²/s, or a finer cell", 1e-3 * a_tau));
   if (high > kSlowTau)
     plan.warnings.push_back(

@@ -6,6 +6,7 @@ from typing import Sequence, Tuple
 
 import numpy as np
 
+from .errors import BAD_INPUT, SolidError
 from .records import SHAPE, STATE
 
 Matrix = np.ndarray
@@ -60,6 +61,19 @@ def union_moments(centres: Sequence[Sequence[float]], radii: Sequence[float], di
     return float(total * dy * dz), first, np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) / total
 
 
+def _check(number: int, centres: np.ndarray, radii: np.ndarray, density: float, spheres: Sequence[int]) -> None:
+    """@raise SolidError  what can be no clump, with its number"""
+    if centres.shape != (len(radii), 3) or not len(radii) or len(spheres) != len(radii):
+        raise SolidError(f"clump {number}: centres of shape {centres.shape}, {len(radii)} radii and {len(spheres)} ids; "
+                         "give x, y, z, a radius and an id to each of its spheres", BAD_INPUT)
+    for j, (centre, radius) in enumerate(zip(centres, radii), 1):
+        if not (np.isfinite(centre).all() and np.isfinite(radius) and radius > 0):
+            raise SolidError(f"clump {number}: sphere {j} has its centre at {tuple(map(float, centre))} m and a radius of "
+                             f"{radius} m; give finite numbers, the radius above 0", BAD_INPUT)
+    if not (np.isfinite(density) and density > 0):
+        raise SolidError(f"clump {number}: its density is {density} kg/m³; give one above 0", BAD_INPUT)
+
+
 class Clump:
     """A homogeneous rigid body of spheres (in two dimensions discs): its shape, its motion, its records.
 
@@ -71,6 +85,7 @@ class Clump:
         """@param number, spheres  ids of the carrier and of each sphere, all different
         @param density  [kg/m³]"""
         self.dimension, self.radii = dimension, np.array(radii, float)
+        _check(number, np.array(centres, float), self.radii, density, spheres)
         volume, centroid, _ = union_moments(centres, radii, dimension, depth)
         self.arms = np.array(centres, float) - centroid
         _, _, second = union_moments(self.arms, radii, dimension, depth)

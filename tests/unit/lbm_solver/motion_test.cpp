@@ -115,9 +115,9 @@ TEST_F(Motions, ThatAreWrongAreNamed) {
           {"amplitude is missing or 0", "angular_amplitude"});
   refused(2, kDisc + "velocity = [0.1, 0.0]", {"velocity"});  // without a motion
   refused(2, kDisc + "motion = \"linear\"\nvelocity = [1.0, 0.0]",
-          {"an obstacle's motion makes 1 m/s", "a run stops at 0.2"});
+          {"the 1. obstacle's motion makes 1 m/s", "a run stops at 0.2"});
   refused(2, kDisc + "motion = \"rotation\"\nangular_velocity = 100.0\nabout = [0.0, 0.0]",
-          {"an obstacle's motion makes"});
+          {"the 1. obstacle's motion"});
   refused(2, kDisc + "motion = \"oscillation\"\namplitude = [1e-6, 0]\nfrequency = 1000",
           {"obstacle.frequency = 1000 Hz has", "fluid steps a period"});
 }

@@ -196,6 +196,17 @@ class Clumps(unittest.TestCase):
         self.assertAlmostEqual(shapes["radius"][0], max(np.linalg.norm(states["x"][i] - clump.x) + shapes["radius"][i]
                                                         for i in (1, 2)))
 
+    def test_what_is_no_clump_is_refused(self):
+        for centre, radius, density in (([0.1, 0, 0], -0.1, 1.0), ([0.1, 0, 0], 0.0, 1.0), ([0.1, 0, 0], math.nan, 1.0),
+                                        ([math.inf, 0, 0], 0.1, 1.0), ([0.1, 0, 0], 0.1, -1.0)):
+            with self.subTest(centre=centre, radius=radius, density=density):
+                with self.assertRaises(bplbm_solid.SolidError) as caught:
+                    bplbm_solid.Clump(7, [[0, 0, 0], centre], [0.1, radius], density, spheres=[8, 9])
+                self.assertIn("clump 7: its density" if density < 0 else "clump 7: sphere 2 has its", str(caught.exception))
+                self.assertEqual(caught.exception.exit_code, 2)
+        with self.assertRaisesRegex(bplbm_solid.SolidError, "clump 7: centres of shape"):
+            bplbm_solid.Clump(7, [[0, 0, 0]], [0.1, 0.1], 1.0, spheres=[8, 9])
+
     def test_left_alone_it_keeps_its_angular_momentum(self):
         clump = bplbm_solid.Clump(1, [[0, 0, 0], [0.6, 0.2, 0], [0, 0.7, 0.3]], [0.5, 0.4, 0.3], 1.0, spheres=[2, 3, 4])
         clump.omega = np.array([1.0, 0.5, 0.2])

@@ -19,7 +19,11 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parents[3] / "protocol" / "
 import bplbm_solid  # noqa: E402
 
 with bplbm_solid.Solid("clump_engine.py") as fluid:
-    parts = np.array([[float(number) for number in part.split(",")] for part in fluid.text("clump").split(":")])
+    try:
+        parts = np.array([[float(n) for n in part.split(",")] for part in fluid.text("clump").split(":")]).reshape(-1, 4)
+    except ValueError as error:
+        raise bplbm_solid.SolidError(f"clump = '{fluid.text('clump')}' is no list of x,y,z,r:x,y,z,r…; correct "
+                                     "[particles.variables]", bplbm_solid.errors.BAD_INPUT) from error
     density, dt, substeps = fluid.number("density_max"), fluid.number("solid_step"), int(fluid.number("substeps"))
     lo, hi, gravity = fluid.vector("{}_lo"), fluid.vector("{}_hi"), fluid.number("gravity") * fluid.vector("gravity_{}")
     dimension = fluid.fluid.dimension

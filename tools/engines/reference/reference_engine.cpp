@@ -159,13 +159,20 @@ class Discs {
   /// Discs in the frame of their clump, whose centre is that of their union.
   void make_clump(std::string text) {
     std::vector<Ball> balls;
+    const auto commas = std::ranges::count(text, ','), colons = std::ranges::count(text, ':');
     for (char& c : text)
       if (c == ',' || c == ':') c = ' ';
     std::istringstream numbers(text);
     for (Ball b; numbers >> b.x[0] >> b.x[1] >> b.x[2] >> b.radius;) balls.push_back(b);
-    if (balls.empty() || !numbers.eof())
+    const auto n = std::ssize(balls);
+    const double most = std::max(box_.hi[0] - box_.lo[0], box_.hi[1] - box_.lo[1]);
+    const bool fit = std::ranges::all_of(balls, [most](const Ball& b) {
+      return b.radius > 0.0 && std::max({b.radius, std::abs(b.x[0]), std::abs(b.x[1])}) <= most;
+    });
+    if (n == 0 || !numbers.eof() || commas != 3 * n || colons != n - 1 || !fit)
       throw ProgramError("the variable 'clump' = '" + offer_.text("clump") +
-                             "' is no list of x,y,z,r:x,y,z,r…; correct [particles.variables]",
+                             "' is no list of x,y,z,r:x,y,z,r… with radii above 0, in a clump no "
+                             "larger than the box; correct [particles.variables]",
                          kBadInput);
     const double depth = offer_.number("depth");
     const Vec3 centre = moments_of_union(balls, 2, depth).centroid;
