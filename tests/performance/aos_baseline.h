@@ -23,7 +23,7 @@ template <class L>
 class TrtCell final : public CellCollision<L> {
  public:
   explicit TrtCell(double tau) : trt_({.tau = tau}) {}
-  void collide(double (&f)[L::Q]) const override { trt_(f); }
+  void collide(double (&f)[L::Q]) const override { trt_(f, 1.0); }
 
  private:
   lbm::TwoRates<L, lbm::MagicRate, lbm::ConstantViscosity, lbm::NoForce<L>> trt_;
