@@ -132,7 +132,14 @@ class CoupledRun {
         ending_ = "stopped by solid: " + *arrival.goodbye;
         break;
       }
-      if (arrival.head.flags & protocol::kCheckpoint) write_checkpoint(interval);
+      if (arrival.head.flags & protocol::kCheckpoint) {
+        if (!checkpoint_asked_)
+          throw protocol::ProtocolError(
+              fmt::format("interval {}: {} says that it has written a checkpoint, for which nobody "
+                          "had asked (flag 4 of the loads)",
+                          interval, partner_.program));
+        write_checkpoint(interval);
+      }
       stop_wished_ = arrival.head.flags & protocol::kStopWished;
       const bool last = arrival.head.flags & protocol::kLast;
       // a frame may find the disk full: until it is written both still stand at this interval
@@ -211,6 +218,7 @@ class CoupledRun {
     if (stop || observers_.draws_at(next)) flags |= protocol::kWantBonds;
     if (times_.any() && times_.stop(next)) flags |= protocol::kSettle;
     if (times_.any() && (signalled || times_.checkpoint(next))) flags |= protocol::kCheckpoint;
+    checkpoint_asked_ = flags & protocol::kCheckpoint;
     if (signalled)
       ending_ = fmt::format("stopped by a signal{}",
                             times_.any() ? "; --restart goes on from its checkpoint" : "");
@@ -271,7 +279,8 @@ class CoupledRun {
   const std::int64_t end_;
   const StopTimes times_;
   bool stop_wished_ = false;  // the solid was told to end
-  bool keep_last_;            // the fluid's part that lies there is good
+  bool checkpoint_asked_ = false;
+  bool keep_last_;  // the fluid's part that lies there is good
   std::optional<std::int64_t> stands_at_ = start_.interval;  // no part of an interval is done
   Vec3 carried_ = Vec3::Zero();   // weight of the particles in the fluid [N]
   std::optional<Record> memory_;  // of particles_ before those of stands_at_ arrived

@@ -47,7 +47,8 @@ struct bplbm_solid {
   StepHeader head;
   bool agreed = false, stop_asked = false, checkpoint_written = false;
   bool underway = false;  // states are sent, their loads have not come
-  bool left = false;      // it said goodbye
+  bool checkpoint_asked = false;
+  bool left = false;  // it said goodbye
 
   void note(const std::exception& what) {
     failure = std::current_exception();
@@ -139,6 +140,7 @@ void receive(bplbm_solid& solid, bplbm_load* loads, std::uint32_t* asked) {
   expect(reply.loads.empty() || loads, "bplbm_exchange: there is no place for the loads");
   std::copy(reply.loads.begin(), reply.loads.end(), reinterpret_cast<Load*>(loads));
   solid.stop_asked = reply.flags & kStop;
+  solid.checkpoint_asked = reply.flags & kCheckpoint;
   ++solid.head.interval;
   if (asked) *asked = reply.flags;
 }
@@ -303,6 +305,8 @@ int bplbm_exchange(bplbm_solid* solid, int64_t n, const bplbm_state* states,
 int bplbm_checkpoint(bplbm_solid* solid, const void* bytes, int64_t size) {
   return guarded(solid, [&] {
     expect(size >= 0 && (bytes || size == 0), "bplbm_checkpoint: give its bytes");
+    expect(solid->checkpoint_asked,
+           "bplbm_checkpoint: the last loads did not ask for one (BPLBM_CHECKPOINT)");
     keep(*solid, {static_cast<const std::byte*>(bytes), static_cast<std::size_t>(size)});
   });
 }

@@ -111,14 +111,25 @@ bool FluidSession::merge_as_before(const std::vector<StateBatch>& batches) {
 
 namespace {
 
-void add(SolidReport& sum, const SolidReport& part) {
-  sum.grains_left += part.grains_left;
+void add(std::int64_t& sum, std::int64_t count, const char* what, std::int64_t interval) {
+  if (count < 0)
+    throw BadMessage(format("the solid counts {} {} at interval {}: a number cannot be below 0",
+                            count, what, interval),
+                     kBadInput);
+  sum += count;
+}
+
+void add(SolidReport& sum, const SolidReport& part, std::int64_t interval) {
+  add(sum.grains_left, part.grains_left, "grains that have left", interval);
   sum.list.insert(sum.list.end(), part.list.begin(), part.list.end());
   if (!part.bonds) return;
   if (!sum.bonds) sum.bonds.emplace();
-  for (const auto count : {&BondCounts::intact, &BondCounts::tension, &BondCounts::shear,
-                           &BondCounts::left, &BondCounts::lost})
-    (*sum.bonds).*count += (*part.bonds).*count;
+  for (const auto& [count, what] : {std::pair{&BondCounts::intact, "intact bonds"},
+                                    {&BondCounts::tension, "bonds broken by tension"},
+                                    {&BondCounts::shear, "bonds broken by shear"},
+                                    {&BondCounts::left, "bonds that have left"},
+                                    {&BondCounts::lost, "lost bonds"}})
+    add((*sum.bonds).*count, (*part.bonds).*count, what, interval);
 }
 
 }  // namespace
@@ -128,7 +139,7 @@ void FluidSession::merge_reports(const std::vector<StateBatch>& batches) {
   for (const StateBatch& batch : batches) {
     if (!batch.report) continue;
     if (!arrival_.report) arrival_.report.emplace();
-    add(*arrival_.report, *batch.report);
+    add(*arrival_.report, *batch.report, next_interval_);
   }
 }
 

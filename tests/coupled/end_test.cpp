@@ -129,6 +129,7 @@ TEST(MisuseInC, IsNamedAtOnce) {
       {"receive", 2, "bplbm_receive: no states are sent; call bplbm_send first"},
       {"send", 2, "bplbm_send: these states are sent; call bplbm_receive"},
       {"goodbye", 2, "bplbm_exchange: bplbm_goodbye was called"},
+      {"checkpoint", 2, "bplbm_checkpoint: the last loads did not ask for one"},
       {"code", 1, "has had enough"},
       {"connect", 2, "bplbm_connect: this process is connected already"},
   };

@@ -44,6 +44,7 @@ static void misuse(const bplbm_setup* setup, const bplbm_state* state, const bpl
     bplbm_goodbye(wire, "has seen enough");
     bplbm_exchange(wire, 1, state, shape, &load, NULL);
   }
+  if (!strcmp(how, "checkpoint")) bplbm_checkpoint(wire, "state", 5);
   if (!strcmp(how, "code")) bplbm_fail(wire, 300, "has had enough");
   if (!strcmp(how, "connect")) {
     bplbm_connect(&second, "second", "test");
