@@ -281,14 +281,6 @@ TEST(Arrival, AClumpThatComesApartIsNamed) {
   expect_refusal(arrive({clump(), apart}), {"clump 9 came without its spheres at interval 1"}, 1);
 }
 
-TEST(Arrival, CountsBelowZeroAreNamed) {
-  StateBatch batch = first();
-  batch.report = SolidReport{-1, std::nullopt, {}};
-  expect_refusal(arrive({batch}), {"counts -1 grains that have left at interval 0"}, 0);
-  batch.report = SolidReport{0, BondCounts{1, -3, 0, 0, 0}, {}};
-  expect_refusal(arrive({batch}), {"counts -3 bonds broken by tension at interval 0"}, 0);
-}
-
 TEST(Arrival, ARadiusLargerThanTheBoxIsNamed) {
   StateBatch huge = first();
   huge.shapes = {{5, 0.03, 1.0, 1e-5, 1}};

@@ -289,6 +289,14 @@ TEST(Session, NamesAShapeThatCannotBe) {
       "particle 5: radius", kBadInput);
 }
 
+TEST(Session, NamesACountBelowZero) {
+  expect_failure(
+      [](SolidSession& s, int) {
+        s.exchange({0, 0.0, kContinue}, {}, {}, SolidReport{0, BondCounts{1, -3, 0, 0, 0}, {}});
+      },
+      "counts -3 bonds broken by tension at interval 0", kBadInput);
+}
+
 TEST(Session, LoadsThatAreNotFiniteNeverReachTheSolid) {
   EXPECT_THROW(couple(
                    1, 1,
