@@ -8,6 +8,7 @@ import pathlib
 import numpy as np
 
 from bplbm.clump import union_moments
+from bplbm.project import tool
 
 LISTS, PATIENCE = 1000, 2000  # lists of neighbours, at most, and steps with one
 
@@ -37,11 +38,11 @@ def read_shape(path, dimension):
     try:
         rows = np.loadtxt(path, ndmin=2)
     except OSError:
-        raise ValueError(f"{path} cannot be read; give a file of lines x y z radius, as tools/make_clump writes them") from None
+        raise ValueError(f"{path} cannot be read; give a file of lines x y z radius, as {tool('make_clump')} writes them") from None
     except ValueError as error:
-        raise ValueError(f"{path}: {error}; give lines of x y z radius, as tools/make_clump writes them") from None
+        raise ValueError(f"{path}: {error}; give lines of x y z radius, as {tool('make_clump')} writes them") from None
     if rows.shape[1] != 4 or not np.all(np.isfinite(rows)) or not np.all(rows[:, 3] > 0):
-        raise ValueError(f"{path}: give lines of x y z radius, the radius positive, as tools/make_clump writes them")
+        raise ValueError(f"{path}: give lines of x y z radius, the radius positive, as {tool('make_clump')} writes them")
     if dimension == 2 and np.any(rows[:, 2] != 0):
         raise ValueError(f"{path}: a clump of discs has z = 0; give --box six numbers for one of spheres")
     places, radii = rows[:, :dimension], rows[:, 3]

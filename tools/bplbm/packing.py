@@ -59,7 +59,7 @@ def arguments():
     p.add_argument("--diameter", required=True, nargs=2, type=float, metavar=("SMALLEST", "LARGEST"),
                    help="[m]; of clumps: of the disc or sphere of their area or volume")
     p.add_argument("--clump", metavar="FILE", help="makes clumps of this shape: lines of x y z radius in any unit, as "
-                   "tools/make_clump writes them; z = 0 for discs")
+                   f"{tool('make_clump')} writes them; z = 0 for discs")
     p.add_argument("--law", default="uniform", choices=["uniform", "lognormal"],
                    help="of the diameters; lognormal: ± 2 σ between the two, cut off there")
     group = p.add_mutually_exclusive_group()

@@ -162,7 +162,7 @@ class Completion(InFolder):
     def test_scenes_folders_and_options(self):
         self.scene("settled")
         self.assertEqual(self.completed("settl"), ["settling_disc", "settled"])
-        self.assertEqual(self.completed("--no-b"), ["--no-build"])
+        self.assertEqual(self.completed("--no-b"), ["--no-bind", "--no-build"])
 
 
 if __name__ == "__main__":
