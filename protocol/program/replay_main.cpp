@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "protocol/program/command_line.h"
+#include "protocol/program/mpi_start.h"
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 #include "protocol/transport/mpi_channel.h"
@@ -126,7 +127,10 @@ int main(int argc, char** argv) {
   app.add_option("trace", options.path, "file written with --record")->required();
   if (const auto code = read_command_line(app, "replay", argc, argv)) return *code;
 
-  MPI_Init(&argc, &argv);
+  {
+    const MpiStart bounded("replay");
+    MPI_Init(&argc, &argv);
+  }
   std::unique_ptr<Channel> channel;
   World world;
   int code = kOk;

@@ -99,8 +99,8 @@ void complain_of_open_handles() {
 }
 
 void count_handle(const std::string& program) {
-  static const int registered = std::atexit(complain_of_open_handles);
-  if (registered == 0 && open_handles++ == 0) first_program = program;
+  [[maybe_unused]] static const int registered = std::atexit(complain_of_open_handles);
+  if (open_handles++ == 0) first_program = program;
 }
 
 void send(bplbm_solid& solid, std::int64_t n, const bplbm_state* states,

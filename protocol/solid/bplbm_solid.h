@@ -114,7 +114,7 @@ typedef struct bplbm_solid bplbm_solid;
 
 /* Finds the fluid among the programs of this mpirun, and hears what its scene says. Initialises MPI
  * where that has not been done. *solid is made also after a failure, for bplbm_error and
- * bplbm_close. `program` and `version` appear in messages. */
+ * bplbm_close. `program` and `version` appear in messages. One connection a process. */
 int bplbm_connect(bplbm_solid** solid, const char* program, const char* version);
 
 /* The sentence that belongs to the first failure; "" where there was none. Valid until
@@ -151,7 +151,7 @@ int bplbm_exchange(bplbm_solid* solid, int64_t n, const bplbm_state* states,
 int bplbm_send(bplbm_solid* solid, int64_t n, const bplbm_state* states, const bplbm_shape* shapes);
 int bplbm_receive(bplbm_solid* solid, bplbm_load* loads, uint32_t* asked);
 
-/* Writes this program's part of a checkpoint: the pieces of all ranks one after the other, in the
+/* Writes this program's part of a checkpoint, where the last loads asked for it: the pieces of all ranks one after the other, in the
  * order of ranks, whole or not at all. On a restart setup.first_interval is above 0, and the
  * variable "restart_file" names the file. */
 int bplbm_checkpoint(bplbm_solid* solid, const void* bytes, int64_t size);

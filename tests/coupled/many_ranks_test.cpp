@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "tests/support/coupled_job.h"
 
@@ -77,17 +76,7 @@ class ManyRanks : public testing::TestWithParam<std::string> {
   }
   using Table = std::vector<std::vector<double>>;
   Table probes(const std::string& out) const {
-    std::istringstream text(test::read_file(folder_.path() + "/" + out + "/probes.csv"));
-    Table table;
-    std::string line, word;
-    std::getline(text, line);
-    while (std::getline(text, line)) {
-      std::istringstream words(line);
-      table.emplace_back();
-      while (std::getline(words, word, ','))
-        table.back().push_back(std::strtod(word.c_str(), nullptr));
-    }
-    return table;
+    return test::read_rows(folder_.path() + "/" + out + "/probes.csv");
   }
   /// Alike in relation to the largest number of a column, as far as the digits written can tell.
   static void expect_alike(const Table& a, const Table& b) {

@@ -171,16 +171,7 @@ class RankFeatures : public testing::TestWithParam<Case> {
     std::map<std::string, Table> all;
     for (const auto& file : std::filesystem::directory_iterator(folder_.path() + "/" + out)) {
       if (file.path().extension() != ".csv") continue;
-      std::istringstream text(test::read_file(file.path()));
-      Table& table = all[file.path().filename()];
-      std::string line, word;
-      std::getline(text, line);
-      while (std::getline(text, line)) {
-        std::istringstream words(line);
-        table.emplace_back();
-        while (std::getline(words, word, ','))
-          table.back().push_back(std::strtod(word.c_str(), nullptr));
-      }
+      all[file.path().filename()] = test::read_rows(file.path());
     }
     return all;
   }

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -90,6 +91,20 @@ std::string read_file(const std::string& path) {
   std::stringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+std::vector<std::vector<double>> read_rows(const std::string& path) {
+  std::istringstream text(read_file(path));
+  std::vector<std::vector<double>> rows;
+  std::string line, word;
+  std::getline(text, line);
+  while (std::getline(text, line)) {
+    std::istringstream words(line);
+    rows.emplace_back();
+    while (std::getline(words, word, ','))
+      rows.back().push_back(std::strtod(word.c_str(), nullptr));
+  }
+  return rows;
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

@@ -35,6 +35,9 @@ class TemporaryFolder {
 
 std::string read_file(const std::string& path);
 
+/// Rows of numbers of a table of a run, without the line of their names.
+std::vector<std::vector<double>> read_rows(const std::string& path);
+
 /// Text with every occurrence of `from` replaced; fails the test where there is none.
 std::string replaced(std::string text, const std::string& from, const std::string& to);
 

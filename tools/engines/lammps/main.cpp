@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "protocol/program/mpi_calls.h"
+#include "protocol/program/mpi_start.h"
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 #include "protocol/transport/mpi_channel.h"
@@ -78,7 +79,10 @@ extern "C" int MPI_Abort(MPI_Comm, int) {
 
 int main(int argc, char** argv) {
   std::vector<std::string> arguments(argv, argv + argc);
-  MPI_Init(&argc, &argv);
+  {
+    const protocol::MpiStart bounded("lammps_engine");
+    MPI_Init(&argc, &argv);
+  }
   protocol::catch_signals();
   protocol::World world;
   int code = protocol::kOk;

@@ -17,6 +17,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "protocol/program/mpi_start.h"
 #include "protocol/program/program.h"
 #include "protocol/program/solid_parts.h"
 #include "protocol/program/watch.h"
@@ -377,7 +378,10 @@ void run(Channel& channel) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  MPI_Init(&argc, &argv);
+  {
+    const MpiStart bounded("reference_engine");
+    MPI_Init(&argc, &argv);
+  }
   catch_signals();
   std::unique_ptr<Channel> channel;
   World world;
