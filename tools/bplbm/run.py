@@ -300,13 +300,17 @@ def main():
     try:
         return go(args, others, out)
     finally:
-        if hold:  # what has come besides lbm's own, as pictures: a later run may replace it
+        if hold and out.is_dir():  # what has come besides lbm's own, as pictures: a later run may replace it
             output_folder.add_files(out, output_folder.files(out) - before)
 
 
 def go(args, others, out):
     """The job, its comparison runs, pictures and results. Returns the exit code."""
     code = run_job(args, out) or study(args, others, out)
+    if not out.is_dir():
+        print(f"run | error | {out} has been moved or deleted; leave an output folder where it is until its run has ended, and "
+              "then make this run again", file=sys.stderr)
+        return code or FAULT
     if code:
         print(f"run | stopped with exit code {code}; logs in {out}", file=sys.stderr)
         if code in (1, 3) and (out / "checkpoint.h5").exists():
