@@ -33,10 +33,12 @@ using Paths = std::map<std::int64_t, std::vector<Row>>;
 
 class ClumpsOfEngines : public testing::Test {
  protected:
+  test::JobResult run(const std::string& engine, const std::string& options) const {
+    return test::run(test::mpirun({test::kLbm + " --progress none " + options}, {command(engine)}),
+                     folder_.path(), 100.0);
+  }
   void expect_ok(const std::string& engine, const std::string& options) const {
-    const test::JobResult job =
-        test::run(test::mpirun({test::kLbm + " --progress none " + options}, {command(engine)}),
-                  folder_.path(), 100.0);
+    const test::JobResult job = run(engine, options);
     ASSERT_EQ(job.exit_code, 0) << engine << job.output;
   }
   std::string probes(const std::string& out) const {
@@ -83,6 +85,7 @@ void expect_same(const Paths& a, const Paths& b, int clumps, double place, doubl
   }
 }
 
+const std::string kThree = "-0.001,0,0,0.001:0,0.0004,0,0.001:0.001,0,0,0.0008";
 constexpr const char* kFlat = R"(title = "clumps of discs"
 [box]
 size = [0.02, 0.02]
@@ -160,6 +163,22 @@ TEST_F(ClumpsOfEngines, TumbleAlikeInSpace) {
   if (!installed("yade")) GTEST_SKIP() << "yade is not installed";
   folder_.write("scene.toml", kSpace);
   expect_same(paths("python", 3), paths("yade", 3), 1, 3e-7, 1e-4);
+}
+
+TEST_F(ClumpsOfEngines, WhatIsNoneIsNamed) {
+  const std::pair<std::string, std::string> wrong[] = {{"reference", "0,0,0"},
+                                                       {"reference", "0,0,0,0.001;0,0,0,0.001"},
+                                                       {"reference", "0,0,0,-1"},
+                                                       {"python", "0,0,0,one"},
+                                                       {"yade", "0,0,0"}};
+  for (const auto& [engine, clump] : wrong) {
+    if (!installed(engine)) continue;
+    SCOPED_TRACE(engine);
+    folder_.write("scene.toml", test::replaced(kFlat, kThree, clump));
+    test::expect_end(run(engine, "--out out --force"), 60.0, 2,
+                     {"lbm | error | the solid program stopped: ",
+                      "= '" + clump + "' is no list of x,y,z,r:x,y,z,r…"});
+  }
 }
 
 class ClumpEngineRestart : public ClumpsOfEngines,
