@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "lbm_solver/io/cell_set.h"
+#include "lbm_solver/io/cell_fields.h"
 #include "lbm_solver/solver/fluid.h"
 #include "lbm_solver/solver/plan.h"
 

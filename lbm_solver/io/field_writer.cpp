@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "lbm_solver/io/cell_set.h"
 #include "lbm_solver/io/hdf5_array.h"
 #include "lbm_solver/io/view_script.h"
 #include "protocol/transport/hdf5_file.h"
@@ -78,6 +79,35 @@ std::vector<double> bond_states(hid_t group) {
 
 std::string group_name(std::size_t index) {
   return fmt::format("frame{:06}", index);
+}
+
+/// The table of particles, and by columns, as ParaView wants them.
+void write_particles(hid_t group, const FieldFrame& f, int dimension) {
+  const bool flat = dimension == 2;
+  const std::size_t count = f.particles.size();
+  std::vector<double> table, places;
+  for (const Particle& p : f.particles) {
+    append_row(table, p, flat);
+    places.insert(places.end(), p.state.x.begin(), p.state.x.begin() + dimension);
+  }
+  write_array(group, "particles", table, {count, flat ? hsize_t{8} : hsize_t{12}},
+              flat ? "1,m,m,m,m/s,m/s,rad/s,1" : "1,m,m,m,m,m/s,m/s,m/s,rad/s,rad/s,rad/s,1",
+              flat ? "id,x,y,radius,vx,vy,omega,type"
+                   : "id,x,y,z,radius,vx,vy,vz,omega_x,omega_y,omega_z,type");
+  if (count == 0) return;
+  std::vector<double> carriers;
+  for (const Particle& p : f.particles)
+    carriers.push_back(static_cast<double>(protocol::carrier_of(p.shape)));
+  if (std::ranges::any_of(f.particles, [](const Particle& p) { return is_part(p.shape); }))
+    write_array(group, "particle_carrier", carriers, {count}, "1");
+  write_array(group, "particle_places", places, {count, static_cast<hsize_t>(dimension)}, "m");
+  for (const PointValue& value : kPointValues) {
+    std::vector<double> column;
+    for (std::size_t i = 0; i < count; ++i) value.append(column, f.particles[i], f.loads[i]);
+    std::vector<hsize_t> shape{count};
+    if (value.components > 1) shape.push_back(value.components);
+    write_array(group, (std::string("particle_") + value.name).c_str(), column, shape, value.unit);
+  }
 }
 
 }  // namespace
@@ -163,7 +193,7 @@ void FieldWriter::write(const FieldFrame& f, const Decomposition& ranks) {
                     f.particles.size(),
                     f.bond_state};
   write_fields(group, f.cells, dimension_, ranks);
-  write_particles(group, f);
+  write_particles(group, f, dimension_);
   if (bonds > 0) {
     const auto d = static_cast<hsize_t>(dimension_);
     write_array(group, "bond_ends", f.bond_ends, {2 * bonds, d}, "m");
@@ -172,35 +202,6 @@ void FieldWriter::write(const FieldFrame& f, const Decomposition& ranks) {
   }
   entries_.push_back(entry);
   write_xdmf();
-}
-
-/// The table of particles, and by columns, as ParaView wants them.
-void FieldWriter::write_particles(hid_t group, const FieldFrame& f) const {
-  const bool flat = dimension_ == 2;
-  const std::size_t count = f.particles.size();
-  std::vector<double> table, places;
-  for (const Particle& p : f.particles) {
-    append_row(table, p, flat);
-    places.insert(places.end(), p.state.x.begin(), p.state.x.begin() + dimension_);
-  }
-  write_array(group, "particles", table, {count, flat ? hsize_t{8} : hsize_t{12}},
-              flat ? "1,m,m,m,m/s,m/s,rad/s,1" : "1,m,m,m,m,m/s,m/s,m/s,rad/s,rad/s,rad/s,1",
-              flat ? "id,x,y,radius,vx,vy,omega,type"
-                   : "id,x,y,z,radius,vx,vy,vz,omega_x,omega_y,omega_z,type");
-  if (count == 0) return;
-  std::vector<double> carriers;
-  for (const Particle& p : f.particles)
-    carriers.push_back(static_cast<double>(protocol::carrier_of(p.shape)));
-  if (std::ranges::any_of(f.particles, [](const Particle& p) { return is_part(p.shape); }))
-    write_array(group, "particle_carrier", carriers, {count}, "1");
-  write_array(group, "particle_places", places, {count, static_cast<hsize_t>(dimension_)}, "m");
-  for (const PointValue& value : kPointValues) {
-    std::vector<double> column;
-    for (std::size_t i = 0; i < count; ++i) value.append(column, f.particles[i], f.loads[i]);
-    std::vector<hsize_t> shape{count};
-    if (value.components > 1) shape.push_back(value.components);
-    write_array(group, (std::string("particle_") + value.name).c_str(), column, shape, value.unit);
-  }
 }
 
 /// Cells of a frame, x last.

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "lbm_solver/base/units.h"
-#include "lbm_solver/io/cell_set.h"
-#include "protocol/transport/hdf5_file.h"
+#include "lbm_solver/io/cell_fields.h"
 #include "protocol/wire/session.h"
 
 namespace lbm {
@@ -43,7 +42,7 @@ class FieldWriter {
   /// @param keep_until  a run that goes on keeps the frames before this time
   FieldWriter(const std::string& folder, const Units& units, int dimension = 2,
               double keep_until = 0.0);
-  /// Collective: other ranks than the first, which alone has a writer, call `write_fields`.
+  /// Collective: other ranks than the first, which alone has a writer, call `send_fields`.
   void write(const FieldFrame& frame, const Decomposition& ranks);
 
  private:
@@ -63,7 +62,6 @@ class FieldWriter {
   };
   std::vector<unsigned long long> shape(const Entry& entry) const;
   std::string shape_text(const Entry& entry, int more) const;
-  void write_particles(hid_t group, const FieldFrame& frame) const;
 
   std::string folder_;
   Units units_;
