@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "lbm_solver/base/errors.h"
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/coupling/run.h"
 #include "lbm_solver/io/output_folder.h"
@@ -110,7 +110,7 @@ int check(const Options& o) {
   }
   if (!scene.coupling) throw InputError(scene.file, "has no [coupling]", "there are no variables");
   std::string line;
-  for (const auto& v : make_hello(scene, plan).variables)
+  for (const auto& v : make_handshake(scene, plan).variables)
     line += fmt::format("{}-var {} {}", line.empty() ? "" : " ", v.name, v.value);
   fmt::print("{}\n", line);
   return protocol::kOk;

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "lbm_solver/base/errors.h"
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/coupling/run_state.h"
 #include "lbm_solver/coupling/stop_times.h"
@@ -72,7 +72,8 @@ class CoupledRun {
         options_(options),
         log_(log),
         start_(start_of(options, plan, restart)),
-        solid_(channel, make_hello(scene, plan, start_, ranks.cells()), scene.coupling->timeout),
+        solid_(channel, make_handshake(scene, plan, start_, ranks.cells()),
+               scene.coupling->timeout),
         fluid_(make_fluid(scene, plan, ranks)),
         bodies_(obstacle_bodies(scene, plan)),
         obstacles_(bodies_.size()),
@@ -89,7 +90,7 @@ class CoupledRun {
             partner_.program, partner_.program_version, plan.substeps, plan.interval(),
             scene.coupling->overlapped ? ", overlapped" : "");
     for (const std::string& wall :
-         protocol::one_sided_walls(make_hello(scene, plan, start_, ranks.cells()), partner_))
+         protocol::one_sided_walls(make_handshake(scene, plan, start_, ranks.cells()), partner_))
       log.say(start_.interval, "warning", "{}", wall);
     if (!partner_.sides)
       log.say(start_.interval, "coupling",

@@ -19,7 +19,7 @@
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
 #include "liggghts_coupling/host/script_checks.h"
-#include "liggghts_coupling/host/solid_hello.h"
+#include "liggghts_coupling/host/solid_handshake.h"
 #include "protocol/transport/trace.h"
 
 namespace dem {
@@ -60,7 +60,7 @@ protocol::Setting FixLbmCouple::setting() const {
 /// What the script is set up to do.
 protocol::Hello FixLbmCouple::hello() const {
   const protocol::Hello& fluid = Coupling::instance().session->fluid();
-  protocol::Hello hello = SolidHello(lmp, groupbit, coupling_->substeps(), clumps_).collect();
+  protocol::Hello hello = SolidHandshake(lmp, groupbit, coupling_->substeps(), clumps_).collect();
   if (hello.buoyancy != protocol::Buoyancy::BySolid)
     hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
                                                                 : protocol::Buoyancy::ByFluid;

@@ -36,14 +36,15 @@ FluidSession::FluidSession(Channel& channel, Hello hello, double timeout)
 const Hello& FluidSession::agree() {
   const Stopwatch watch(waited_);
   for (int r = 0; r < channel_.remote_size(); ++r) {
-    const Bytes frame = channel_.receive(r, {timeout_, "its hello (end of its script's set-up)"});
+    const Bytes frame =
+        channel_.receive(r, {timeout_, "its handshake (end of its script's set-up)"});
     if (kind_of(frame) == Kind::Goodbye)
       throw PeerLeft(format("{} left before the coupling began: {}", channel_.remote_name(),
                             decode<Goodbye>(frame).reason));
     const Hello hello = decode<Hello>(frame);
     if (r == 0) partner_ = hello;
   }
-  settle(channel_, mine_, partner_, {timeout_, "its answer to our hello"});
+  settle(channel_, mine_, partner_, {timeout_, "its answer to our handshake"});
   return partner_;
 }
 

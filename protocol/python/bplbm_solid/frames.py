@@ -28,7 +28,7 @@ def _as(form: str):
 
 @dataclass
 class Handshake:
-    """Everything that both sides must agree on before the first step; the wire's `hello`, field by field."""
+    """Everything that both sides must agree on before the first step; the wire's handshake, field by field."""
 
     version: int = _as("I")
     role: int = _as("I")

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "tests/unit/lbm_solver/scene_files.h"
@@ -140,7 +140,7 @@ TEST(Plan, ReportSaysWhatTheHydraulicRatioDoes) {
 TEST(Plan, HelloOffersEveryNumberTheScriptNeeds) {
   const Scene s = settling_disc();
   const Plan p = make_plan(s);
-  const auto hello = make_hello(s, p);
+  const auto hello = make_handshake(s, p);
   const auto value = [&](const std::string& name) -> std::string {
     for (const auto& v : hello.variables)
       if (v.name == name) return v.value;
