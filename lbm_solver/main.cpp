@@ -204,6 +204,19 @@ double connect_timeout(const std::optional<Scene>& scene) {
   return scene && scene->coupling ? scene->coupling->connect_timeout : -1.0;
 }
 
+/// @throws InputError  a solid program is missing, or there is one too many
+void check_partner(const Options& o, const Scene& scene, bool has_partner) {
+  if (scene.coupling && !has_partner)
+    throw InputError(
+        "mpirun", "no solid program was started beside lbm",
+        "start: mpirun -np 1 lbm scene.toml : -np 1 liggghts -in in.liggghts, or tools/run");
+  if (!scene.coupling && has_partner)
+    throw InputError(scene.file, "has no [coupling], but a solid program was started",
+                     "start lbm alone, or add the tables [coupling] and [particles]");
+  if (!o.record.empty() && !has_partner)
+    throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
+}
+
 /// @param channel  set as soon as there is a partner, so that an error can be told to it
 void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol::World& world) {
   std::exception_ptr mistake;  // in the scene: said when there is a partner who can hear it
@@ -226,15 +239,7 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   const Plan plan = make_plan(scene, restart ? std::optional(restart->step) : std::nullopt);
   if (restart) check_same_scene(*restart, scene, plan, o.run.restart);
   const Decomposition blocks = divide(o, scene, plan, world.local);
-  if (scene.coupling && !channel)
-    throw InputError(
-        "mpirun", "no solid program was started beside lbm",
-        "start: mpirun -np 1 lbm scene.toml : -np 1 liggghts -in in.liggghts, or tools/run");
-  if (!scene.coupling && channel)
-    throw InputError(scene.file, "has no [coupling], but a solid program was started",
-                     "start lbm alone, or add the tables [coupling] and [particles]");
-  if (!o.record.empty() && !channel)
-    throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
+  check_partner(o, scene, channel != nullptr);
   const auto work = known_work(scene, plan, blocks, restart);
   const Decomposition ranks = work ? of_equal_work(blocks, *work) : blocks;
   const std::unique_ptr<OutputFolder> folder = take_folder(o, scene, ranks);

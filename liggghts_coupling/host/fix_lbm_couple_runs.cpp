@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// What a script may do between two runs, and what not.
+/// What a script may do between two runs, and what not; the recording of all of them.
 #include <atom.h>
+#include <comm.h>
 #include <domain.h>
+#include <error.h>
 #include <fmt/format.h>
 #include <signal_handling.h>
 #include <update.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
+#include "protocol/transport/trace.h"
 #include "protocol/wire/agreement.h"
 
 namespace dem {
@@ -59,6 +63,22 @@ void FixLbmCouple::post_run() {
     std::copy_n(atom->x[i], 3, held_[i] + kPlace);
     held_[i][kRadius] = atom->radius[i];
   }
+}
+
+void FixLbmCouple::begin_recording(const std::string& record) const {
+  Coupling& job = Coupling::instance();
+  const int rank = comm->me;
+  const std::string file = rank == 0 ? record : fmt::format("{}.{}", record, rank);
+  try {
+    auto writer =
+        std::make_unique<protocol::TraceWriter>(file, "solid", rank, job.channel->remote_size());
+    for (int r = 0; r < job.channel->remote_size(); ++r)  // came before this script was read
+      writer->record(protocol::Direction::Received, r, encode(job.session->fluid()));
+    job.channel = protocol::make_recording_channel(std::move(job.channel), std::move(writer));
+  } catch (const std::exception& e) {
+    error->one(FLERR, e.what());
+  }
+  job.session->use(*job.channel);
 }
 
 }  // namespace dem

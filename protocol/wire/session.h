@@ -55,6 +55,7 @@ class FluidSession {
   void merge(const std::vector<StateBatch>& batches);
   void merge_reports(const std::vector<StateBatch>& batches);
   bool merge_as_before(const std::vector<StateBatch>& batches);
+  void merge_anew(const std::vector<StateBatch>& batches);
   void check_states(std::span<const Particle> before, std::span<const std::int64_t> told);
 
   Channel& channel_;

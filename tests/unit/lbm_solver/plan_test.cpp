@@ -137,7 +137,7 @@ TEST(Plan, ReportSaysWhatTheHydraulicRatioDoes) {
   EXPECT_NE(describe(s, make_plan(s)).find("ratio 1, 0.8 by type:"), std::string::npos);
 }
 
-TEST(Plan, HelloOffersEveryNumberTheScriptNeeds) {
+TEST(Plan, HandshakeOffersEveryNumberTheScriptNeeds) {
   const Scene s = settling_disc();
   const Plan p = make_plan(s);
   const auto hello = make_handshake(s, p);
