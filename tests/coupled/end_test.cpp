@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// The end of a job, as protocol/README.md has it: whoever leaves, at whatever stage and however,
+/// The end of a job, as protocol/WIRE.md has it: whoever leaves, at whatever stage and however,
 /// the other side ends in time and says why.
 #include <gtest/gtest.h>
 

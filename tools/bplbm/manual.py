@@ -30,7 +30,7 @@ READERS = {
     + ["liggghts_coupling/bond/README.md", "lbm_solver/docs/bibliography.md"],
     "Evidence": ["tests/EVIDENCE.md", "lbm_solver/docs/defaults.md", "lbm_solver/docs/performance.md",
                  "cases/report/README.md", "cases/report/full/README.md"],
-    "Contributing": ["CONTRIBUTING.md", "protocol/README.md", "CHANGELOG.md"],
+    "Contributing": ["CONTRIBUTING.md", "protocol/README.md", "protocol/WIRE.md", "CHANGELOG.md"],
     "Rooms": ["**/*.md"],
 }
 

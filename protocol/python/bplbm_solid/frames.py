@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frames to messages and back, from protocol/README.md."""
+"""Frames to messages and back, from protocol/WIRE.md."""
 
 import struct
 from dataclasses import dataclass, field, fields

@@ -14,7 +14,7 @@ BIBLIOGRAPHY = "lbm_solver/docs/bibliography.md"
 ROOMS = ("lbm_solver", "liggghts_coupling", "protocol", "tools", "tests")
 # Folders that hold data of the room above, and READMEs that are a text of their own.
 DATA = re.compile(r"tests/(fuzz/corpus|unit/lbm_solver/pictures|hard/|support/stopped)|tools/bplbm/templates/|protocol/python/bplbm_solid")
-LONG = {"protocol/README.md", "protocol/python/README.md"}  # the text of the wire, and the page of a package
+LONG = {"protocol/python/README.md"}  # the page of a package
 # Rooms whose README names each of their files, but for those whose name says enough.
 NAMED = re.compile(r"(lbm_solver/\w+|liggghts_coupling/\w+|protocol/(wire|transport|program|solid)|"
                    r"tests/(coupled|fuzz|performance|physics|sanitized|support))/[^/]+$")
