@@ -23,7 +23,7 @@ STYLE = """
 # Readers, and what they read first; every other document comes under the last heading, by its folder.
 READERS = {
     "Start": ["README.md", "cases/TUTORIAL.md", "cases/RUNNING.md", "cases/TROUBLESHOOTING.md", "cases/PYTHON.md"],
-    "Scenes": ["cases/README.md", "cases/*/README.md"],
+    "Scenes": ["cases/README.md", "cases/*/*.md"],
     "Reference": ["lbm_solver/docs/scene.md", "lbm_solver/docs/output.md", "liggghts_coupling/docs/commands.md",
                   "lbm_solver/docs/parallel.md"],
     "Theory": [f"lbm_solver/docs/{page}.md" for page in ("collision", "solids", "resistance", "boundaries", "loads")]
