@@ -5,7 +5,7 @@
 #include <comm.h>
 #include <domain.h>
 #include <error.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <force.h>
 #include <update.h>
 

@@ -5,7 +5,7 @@
 #include <atom.h>
 #include <comm.h>
 #include <error.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <modify.h>
 #include <signal_handling.h>
 #include <update.h>

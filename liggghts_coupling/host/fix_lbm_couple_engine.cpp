@@ -3,7 +3,7 @@
 #include <atom.h>
 #include <comm.h>
 #include <domain.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <integrate.h>
 #include <modify.h>
 #include <neighbor.h>

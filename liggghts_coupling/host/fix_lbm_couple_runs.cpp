@@ -4,7 +4,7 @@
 #include <comm.h>
 #include <domain.h>
 #include <error.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <signal_handling.h>
 #include <update.h>
 

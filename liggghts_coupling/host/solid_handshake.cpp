@@ -6,7 +6,7 @@
 #include <domain.h>
 #include <error.h>
 #include <fix_gravity.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <modify.h>
 #include <update.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// `replay --as solid|fluid trace.h5` stands in for a program with what was recorded, and compares
 /// what the other one sends with the recording.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 
