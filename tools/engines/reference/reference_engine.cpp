@@ -25,40 +25,13 @@
 #include "protocol/wire/ball_union.h"
 #include "protocol/wire/clumps.h"
 #include "protocol/wire/codec.h"
-#include "protocol/wire/numbers.h"
 #include "protocol/wire/session.h"
+#include "tools/engines/reference/offer.h"
 
 namespace {
 
 using namespace protocol;
-
-/// Numbers and texts that the fluid offers.
-class Offer {
- public:
-  explicit Offer(const Hello& fluid) {
-    for (const Variable& v : fluid.variables) values_[v.name] = v.value;
-  }
-  double number(const std::string& name) const {
-    const auto found = values_.find(name);
-    if (found == values_.end())
-      throw ProgramError(fmt::format("the fluid offers no variable '{}'", name), kBadInput);
-    const auto value = to_number<double>(found->second);
-    if (!value)
-      throw ProgramError(fmt::format("the fluid's variable '{}' = '{}' is no number; correct "
-                                     "[particles.variables] of the scene",
-                                     name, found->second),
-                         kBadInput);
-    return *value;
-  }
-  double number_or(const std::string& name, double otherwise) const {
-    return values_.contains(name) ? number(name) : otherwise;
-  }
-  std::string text(const std::string& name) const { return values_.at(name); }
-  bool has(const std::string& name) const { return values_.contains(name); }
-
- private:
-  std::map<std::string, std::string> values_;
-};
+using engine::Offer;
 
 struct Box {
   Vec3 lo{}, hi{};
@@ -335,43 +308,49 @@ class Discs {
   double step_ = 0.0, stiffness_ = 0.0, damping_ = 0.0;
 };
 
+/// From what this program was told to do, not a copy of the fluid's.
+Hello handshake(const Hello& fluid, const Offer& offer, const Discs& discs) {
+  Hello mine;
+  mine.role = Role::Solid;
+  mine.program = "reference_engine";
+  mine.program_version = BPLBM_VERSION;
+  mine.dimension = 2;
+  mine.box_lo = discs.box().lo;
+  mine.box_hi = discs.box().hi;
+  mine.periodic = {discs.box().periodic[0], discs.box().periodic[1], 1};
+  mine.depth = offer.number("depth");
+  mine.gravity = discs.gravity();
+  mine.buoyancy = fluid.buoyancy == Buoyancy::None ? Buoyancy::None : Buoyancy::ByFluid;
+  mine.step = discs.step();
+  mine.solid_steps = static_cast<std::uint32_t>(offer.number("substeps"));
+  mine.particles = discs.bodies();
+  mine.first_interval = fluid.first_interval;
+  mine.features = kCheckpoints;
+  mine.sides.emplace();
+  for (int k = 0; k < 2; ++k)
+    if (discs.box().walls[k]) (*mine.sides)[2 * k] = (*mine.sides)[2 * k + 1] = SideWall::Whole;
+  return mine;
+}
+
 void run(Channel& channel) {
   SolidSession session(channel, 60.0);
   limit_waits(session.timeout());
   const Hello& fluid = session.fluid();
   const Offer offer(fluid);
   Discs discs(fluid, offer);
-  Hello hello;  // from what this program was told to do, not a copy of the fluid's
-  hello.role = Role::Solid;
-  hello.program = "reference_engine";
-  hello.program_version = BPLBM_VERSION;
-  hello.dimension = 2;
-  hello.box_lo = discs.box().lo;
-  hello.box_hi = discs.box().hi;
-  hello.periodic = {discs.box().periodic[0], discs.box().periodic[1], 1};
-  hello.depth = offer.number("depth");
-  hello.gravity = discs.gravity();
-  hello.buoyancy = fluid.buoyancy == Buoyancy::None ? Buoyancy::None : Buoyancy::ByFluid;
-  hello.step = discs.step();
-  hello.solid_steps = static_cast<std::uint32_t>(offer.number("substeps"));
-  hello.particles = discs.bodies();
-  hello.first_interval = fluid.first_interval;
-  hello.features = kCheckpoints;
-  hello.sides.emplace();
-  for (int k = 0; k < 2; ++k)
-    if (discs.box().walls[k]) (*hello.sides)[2 * k] = (*hello.sides)[2 * k + 1] = SideWall::Whole;
-  session.agree(hello);
+  const Hello mine = handshake(fluid, offer, discs);
+  session.agree(mine);
   SolidParts parts = SolidParts::of(fluid);
   StepHeader head{fluid.first_interval, 0.0, kContinue};
   for (;; ++head.interval) {
-    head.time = static_cast<double>(head.interval) * hello.step * hello.solid_steps;
+    head.time = static_cast<double>(head.interval) * mine.step * mine.solid_steps;
     if (head.interval > fluid.first_interval) discs.insert(static_cast<int>(head.interval));
     if (signalled()) head.flags |= kStopWished;
     if (head.flags & kCheckpoint) parts.keep(head.interval, discs.checkpoint(head));
     const auto reply = session.exchange(head, discs.states, discs.shapes);
     if (head.flags & kLast) return;
     head.flags = (reply.flags & kStop ? kLast : 0U) | (reply.flags & kCheckpoint);
-    discs.advance(hello.solid_steps, reply.loads);
+    discs.advance(mine.solid_steps, reply.loads);
   }
 }
 
