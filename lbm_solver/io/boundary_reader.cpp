@@ -11,7 +11,7 @@
 namespace lbm {
 namespace {
 
-using Kind = BoundaryScene::Kind;
+using BoundaryKind = BoundaryScene::Kind;
 
 /// `from` and `to` along a side: a number, in three dimensions two.
 void read_extent(TableReader& t, const BoxScene& box, int axis, BoundaryScene& b) {
@@ -62,14 +62,14 @@ void read_velocity(TableReader& t, const BoxScene& box, const std::string& scene
 
 void read_pressure(TableReader& t, BoundaryScene& b) {
   b.pressure = t.number_or("pressure", 0.0, {}, "Pa");
-  if (b.kind == Kind::Pressure) b.flow_rate = t.optional_number("flow_rate", {}, "m³/s");
-  if (b.kind == Kind::Outflow && t.has("flow_rate"))
+  if (b.kind == BoundaryKind::Pressure) b.flow_rate = t.optional_number("flow_rate", {}, "m³/s");
+  if (b.kind == BoundaryKind::Outflow && t.has("flow_rate"))
     t.fail("flow_rate", "has no meaning for an outflow", "take kind = \"pressure\"");
 }
 
 /// How the value changes in time; that of an outflow stays.
 void read_in_time(TableReader& t, const std::string& scene_file, BoundaryScene& b) {
-  if (b.kind != Kind::Outflow) {
+  if (b.kind != BoundaryKind::Outflow) {
     b.frequency = t.number_or("frequency", 0.0, Bounds::non_negative(), "Hz");
     b.table = read_time_table(t, "table", t.choice_or("repeat", "once", {"once", "periodic"}),
                               scene_file);
@@ -92,9 +92,11 @@ BoundaryScene read_boundary(TableReader t, const BoxScene& box, const std::strin
     t.fail("kind", "is missing", "give velocity, moving_wall, pressure or outflow");
   const std::string kind =
       t.choice_or("kind", "", {"velocity", "moving_wall", "pressure", "outflow"});
-  b.kind = kind == "pressure" ? Kind::Pressure : kind == "outflow" ? Kind::Outflow : Kind::Velocity;
+  b.kind = kind == "pressure"  ? BoundaryKind::Pressure
+           : kind == "outflow" ? BoundaryKind::Outflow
+                               : BoundaryKind::Velocity;
   read_extent(t, box, axis, b);
-  if (b.kind == Kind::Velocity)
+  if (b.kind == BoundaryKind::Velocity)
     read_velocity(t, box, scene_file, kind == "moving_wall", b);
   else
     read_pressure(t, b);

@@ -18,6 +18,7 @@
 #include <stdexcept>
 
 #include "lbm_solver/io/picture_file.h"
+#include "lbm_solver/io/refusal.h"
 #include "protocol/transport/hdf5_file.h"
 #include "protocol/wire/numbers.h"
 
@@ -25,10 +26,6 @@ namespace lbm {
 namespace {
 
 constexpr double kMostVoxels = 2e9;
-
-[[noreturn]] void refuse(const std::string& problem, const std::string& remedy) {
-  throw std::invalid_argument(problem + "; " + remedy);
-}
 
 /// A type of number in a file.
 struct NumberType {

@@ -73,7 +73,7 @@ double FixTimeStep::rayleigh() const {
 }
 
 /// Every pair of types of which there are particles, with the stiffest springs.
-std::vector<StepCase> FixTimeStep::cases() const {
+std::vector<StepCase> FixTimeStep::cases() {
   const auto values = [this](const char* name) { return pair_property(*lmp, name, style); };
   const double* const* contact = values("contactNormalStiffness");
   const double* const* shear = values("contactShearStiffness");
@@ -97,7 +97,7 @@ std::vector<StepCase> FixTimeStep::cases() const {
 }
 
 /// Prints every limit.
-FixTimeStep::Critical FixTimeStep::critical() const {
+FixTimeStep::Critical FixTimeStep::critical() {
   const std::vector<StepCase> all = cases();
   Critical critical{std::numeric_limits<double>::max(), {}};
   say(fmt::format("time step limits (before the factor lambda = {}):\n", lambda_));

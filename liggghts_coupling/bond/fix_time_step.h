@@ -40,8 +40,8 @@ class FixTimeStep final : public LAMMPS_NS::Fix {
     double step;
     std::string binding;
   };
-  std::vector<StepCase> cases() const;
-  Critical critical() const;
+  std::vector<StepCase> cases();
+  Critical critical();
 
   double lambda_ = 0.1;
   std::optional<double> interval_, shear_modulus_;
