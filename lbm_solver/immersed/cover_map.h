@@ -33,8 +33,8 @@ class CoverMap {
   /// A solid of any shape that stays where it is: cells that it covers whole are a wall, those at
   /// its surface collide as those of a body do. @throws std::invalid_argument  see fill()
   void add(const Geometry& geometry);
-  /// A mesh that moves: cells that it covers whole are those of a body that moves.
-  /// @throws std::logic_error  bodies are placed already; std::invalid_argument  see fill()
+  /// A mesh that moves: cells that it covers whole are those of a body that moves. To be called
+  /// before bodies are placed. @throws std::invalid_argument  see fill()
   void add(std::unique_ptr<MovingShape> shape);
   /// Where the meshes that move are in the coming step, in the order in which they were added.
   void move(std::span<const Pose> poses);
