@@ -55,6 +55,32 @@ std::string solid_text(const Particles* particles) {
   return text.empty() ? text : ", " + text;
 }
 
+/// Numbers of a scene and its plan, for the summary.
+std::map<std::string, double> scene_parameters(const Scene& scene, const Plan& plan) {
+  std::map<std::string, double> parameters{{"cell", plan.units.dx},
+                                           {"time_step", plan.units.dt},
+                                           {"interval", plan.interval()},
+                                           {"tau", plan.kernel.parameters.tau},
+                                           {"density", scene.fluid.density},
+                                           {"kinematic_viscosity", scene.fluid.viscosity},
+                                           {"gravity_x", scene.fluid.gravity.x()},
+                                           {"gravity_y", scene.fluid.gravity.y()},
+                                           {"depth", scene.box.depth},
+                                           {"box_x", scene.box.size.x()},
+                                           {"box_y", scene.box.size.y()},
+                                           {"velocity_scale", scene.fluid.velocity_scale}};
+  if (scene.box.dimension == 3) {
+    parameters["box_z"] = scene.box.size.z();
+    parameters["gravity_z"] = scene.fluid.gravity.z();
+  }
+  if (scene.particles) {
+    parameters["diameter"] = scene.particles->diameter.hi;
+    parameters["particle_density"] = scene.particles->density.hi;
+    parameters["cells_per_diameter"] = plan.cells_per_diameter;
+  }
+  return parameters;
+}
+
 }  // namespace
 
 void PartClock::charge(const char* part) {
@@ -357,18 +383,7 @@ Summary Observers::summary(double wall_seconds) const {
   s.re = plan_.reynolds;
   s.re_h = plan_.reynolds_cell;
   s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(cells);
-  s.parameters = {{"cell", plan_.units.dx},
-                  {"time_step", plan_.units.dt},
-                  {"interval", plan_.interval()},
-                  {"tau", plan_.kernel.parameters.tau},
-                  {"density", scene_.fluid.density},
-                  {"kinematic_viscosity", scene_.fluid.viscosity},
-                  {"gravity_x", scene_.fluid.gravity.x()},
-                  {"gravity_y", scene_.fluid.gravity.y()},
-                  {"depth", scene_.box.depth},
-                  {"box_x", scene_.box.size.x()},
-                  {"box_y", scene_.box.size.y()},
-                  {"velocity_scale", scene_.fluid.velocity_scale}};
+  s.parameters = scene_parameters(scene_, plan_);
   if (flow_) flow_->describe(s.parameters);
   if (viscosity_) {
     s.parameters["share_at_rest_bound"] = viscosity_->at_rest_bound;
@@ -376,15 +391,6 @@ Summary Observers::summary(double wall_seconds) const {
     s.parameters["shear_rate_max"] = viscosity_->largest_shear / plan_.units.dt;
     s.parameters["mean_viscosity"] =
         viscosity_->mean_viscosity * plan_.units.dx * plan_.units.dx / plan_.units.dt;
-  }
-  if (scene_.box.dimension == 3) {
-    s.parameters["box_z"] = scene_.box.size.z();
-    s.parameters["gravity_z"] = scene_.fluid.gravity.z();
-  }
-  if (scene_.particles) {
-    s.parameters["diameter"] = scene_.particles->diameter.hi;
-    s.parameters["particle_density"] = scene_.particles->density.hi;
-    s.parameters["cells_per_diameter"] = plan_.cells_per_diameter;
   }
   return s;
 }

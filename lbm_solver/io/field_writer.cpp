@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/field_writer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -64,6 +64,16 @@ void append_row(std::vector<double>& to, const Particle& p, bool flat) {
   else
     to.insert(to.end(), {id, s.x[0], s.x[1], s.x[2], shape.radius, s.v[0], s.v[1], s.v[2],
                          s.omega[0], s.omega[1], s.omega[2], type});
+}
+
+/// Sizes of a data set of a frame that was written before; 0 where there is none.
+std::array<hsize_t, 3> shape_of(hid_t group, const char* name) {
+  if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0, 0};
+  const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open ") + name);
+  const Handle space(H5Dget_space(set), H5Sclose, "read a space");
+  std::array<hsize_t, 3> shape{0, 0, 0};
+  check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read a size");
+  return shape;
 }
 
 /// States of the bonds of a frame that was written before.
@@ -152,20 +162,13 @@ bool FieldWriter::keep_frames(double until) {
     const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
     const double time = protocol::hdf5::real_attribute(group, "time");
     if (time >= until) break;
-    const auto rows = [&](const char* name) -> std::array<hsize_t, 3> {
-      if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0, 0};
-      const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open ") + name);
-      const Handle space(H5Dget_space(set), H5Sclose, "read a space");
-      std::array<hsize_t, 3> shape{0, 0, 0};
-      check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read a size");
-      return shape;
-    };
-    const auto cells = rows("pressure");
+    const auto cells = shape_of(group, "pressure");
     const auto along = [&](int axis) {  // x last
       return axis < dimension_ ? static_cast<int>(cells[dimension_ - 1 - axis]) : 1;
     };
-    entries_.push_back({time, along(0), along(1), along(2), rows("solid_fraction")[0] > 0,
-                        rows("viscosity")[0] > 0, rows("particles")[0], bond_states(group)});
+    entries_.push_back(
+        {time, along(0), along(1), along(2), shape_of(group, "solid_fraction")[0] > 0,
+         shape_of(group, "viscosity")[0] > 0, shape_of(group, "particles")[0], bond_states(group)});
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
