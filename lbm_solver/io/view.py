@@ -1,10 +1,12 @@
-"""Shows this run in ParaView: the fluid's speed, grains with their radius, intact bonds; broken bonds are hidden.
+"""Shows this run in ParaView: the fluid's speed, grains and the spheres of clumps, obstacles and moving walls where they are,
+intact bonds; broken bonds are hidden.
 
     pvpython view.py                           writes view.png beside this file
     pvpython view.py --time 0.5 --out a.png    (or pvbatch)
     paraview --script=view.py                  the same scene, ready, in the program
 
-Without a screen it draws on one that xvfb-run (Debian: xvfb, xauth) makes. In three dimensions the fluid is cut at the middle of the box, and grains in front of the cut are left out.
+Without a screen it draws on one that xvfb-run (Debian: xvfb, xauth) makes. In three dimensions the fluid is cut at the middle of
+the box, and what lies in front of the cut is left out. Light grey in the plane is what solids cover of it.
 """
 
 import argparse
@@ -17,6 +19,7 @@ from paraview import simple as pv
 
 PIXELS = 1100  # of the longer side
 GREEN, RED, GREY, DARK = [0.18, 0.56, 0.31], [0.84, 0.15, 0.16], [0.78, 0.76, 0.72], [0.2, 0.2, 0.2]
+STONE = [0.45, 0.55, 0.66]  # of obstacles
 MOST_CELLS = 50_000_000  # that are read, all frames together, to find the largest speed
 
 
@@ -63,17 +66,23 @@ def named(proxy, name):
     return proxy
 
 
-def fluid_shown(fluid, flat, bounds):
-    """The fluid without what solids cover, in three dimensions at the middle of the box."""
-    shown = fluid
+def fluid_and_solids(fluid, flat, bounds):
+    """The fluid without what solids cover, and what they cover or None; in three dimensions at the middle of the box."""
+    plane = fluid
     if not flat:
-        shown = named(pv.Slice(Input=fluid, SliceType="Plane"), "cut")
-        shown.SliceType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
-        shown.SliceType.Normal = [0, 1, 0]
-    if fluid.CellData.GetArray("solid_fraction"):
-        shown = named(pv.Threshold(Input=shown, Scalars=["CELLS", "solid_fraction"], ThresholdMethod="Below Lower Threshold",
-                                   LowerThreshold=0.5), "fluid without solids")
-    return shown
+        plane = named(pv.Slice(Input=fluid, SliceType="Plane"), "cut")
+        plane.SliceType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
+        plane.SliceType.Normal = [0, 1, 0]
+    if not fluid.CellData.GetArray("solid_fraction"):
+        return plane, None
+    return half_covered(plane, "solid_fraction", False, "fluid without solids"), half_covered(plane, "solid_fraction", True, "solids in the plane")
+
+
+def half_covered(cells, array, solid, name):
+    """The cells of which solids cover at least a half, or the others."""
+    part = pv.Threshold(Input=cells, Scalars=["CELLS", array], LowerThreshold=0.5, UpperThreshold=0.5,
+                        ThresholdMethod="Above Upper Threshold" if solid else "Below Lower Threshold")
+    return named(part, name)
 
 
 def highest(fluid, field, times):
@@ -113,8 +122,10 @@ def colour(display, view, fluid, field, largest):
     display.SetScalarBarVisibility(view, True)
 
 
-def behind(points, bounds):
-    """Grains, or ends of bonds, that the cut of the fluid leaves to be seen."""
+def behind(points, flat, bounds):
+    """Grains, ends of bonds or walls that the cut of the fluid leaves to be seen."""
+    if flat:
+        return points
     cut = pv.Clip(Input=points, ClipType="Plane", Invert=0)
     cut.ClipType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
     cut.ClipType.Normal = [0, 1, 0]
@@ -144,17 +155,37 @@ def plain(source, view, rgb, lift, width=None):
     return display
 
 
-def show_solids(view, flat, bounds, cell, broken):
-    grains = block("particles")
-    if grains:
-        shown = grains if flat else behind(grains, bounds)
+def show_balls(view, flat, bounds, cell, name, words, rgb):
+    """Discs with rims, or spheres, of a block of centres and radii."""
+    balls = block(name)
+    if balls:
+        shown = behind(balls, flat, bounds)
         if flat:
-            plain(glyphs(shown, flat, 1.0, "rims of grains"), view, DARK, 0.2 * cell)
-        plain(glyphs(shown, flat, 0.9 if flat else 1.0, "grains"), view, GREY, 0.3 * cell * flat)
+            plain(glyphs(shown, flat, 1.0, f"rims of {words}"), view, DARK, 0.2 * cell)
+        plain(glyphs(shown, flat, 0.9 if flat else 1.0, words), view, rgb, 0.3 * cell * flat)
+
+
+def show_obstacles(view, flat, bounds, cell, fluid, covered):
+    """What does not move by the flow: walls where they are, round ones, images, and the plane's part of all solids."""
+    if covered:
+        display = plain(covered, view, GREY, 0.0)
+        display.Ambient, display.Diffuse = 1.0, 0.0
+    if fluid.CellData.GetArray("image_fraction"):
+        whole = half_covered(fluid, "image_fraction", True, "image")
+        display = plain(named(behind(whole, flat, bounds), "image behind the plane"), view, STONE, 0.05 * cell * flat)
+        display.SetRepresentationType("Surface")
+    walls = block("walls")
+    if walls:
+        plain(named(behind(walls, flat, bounds), "walls behind the plane"), view, DARK if flat else STONE, 0.35 * cell * flat, 2.0)
+    show_balls(view, flat, bounds, cell, "round_obstacles", "round obstacles", STONE)
+
+
+def show_solids(view, flat, bounds, cell, broken):
+    show_balls(view, flat, bounds, cell, "particles", "grains", GREY)
     for name, rgb, visible in (("bonds", GREEN, True), ("broken_bonds", RED, broken)):
         bonds = block(name)
         if bonds:
-            plain(bonds if flat else behind(bonds, bounds), view, rgb, 0.4 * cell * flat, 2.0).Visibility = int(visible)
+            plain(behind(bonds, flat, bounds), view, rgb, 0.4 * cell * flat, 2.0).Visibility = int(visible)
 
 
 def look(view, flat, bounds):
@@ -188,10 +219,13 @@ def main():
     cells = fluid.GetDataInformation().GetExtent()
     flat = cells[5] - cells[4] == 1
     largest = highest(fluid, args.field, times)
-    display = pv.Show(fluid_shown(fluid, flat, bounds), view)
+    shown, covered = fluid_and_solids(fluid, flat, bounds)
+    display = pv.Show(shown, view)
     display.SetRepresentationType("Surface")
     colour(display, view, fluid, args.field, largest)
-    show_solids(view, flat, bounds, (bounds[1] - bounds[0]) / (cells[1] - cells[0]), args.broken)
+    cell = (bounds[1] - bounds[0]) / (cells[1] - cells[0])
+    show_obstacles(view, flat, bounds, cell, fluid, covered)
+    show_solids(view, flat, bounds, cell, args.broken)
     box = pv.Show(named(pv.Outline(Input=fluid), "box"), view)
     box.AmbientColor = box.DiffuseColor = [0.3, 0.3, 0.3]
     label = pv.Show(pv.AnnotateTimeFilter(Input=fluid, Format="t = {time:.4g} s"), view)
