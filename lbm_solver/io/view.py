@@ -128,6 +128,7 @@ def behind(points, flat, bounds):
         return points
     cut = pv.Clip(Input=points, ClipType="Plane", Invert=0)
     cut.ClipType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
+    cut.ClipType.Origin[1] += 1e-4 * (bounds[3] - bounds[2])  # else a face would lie in the plane of the fluid
     cut.ClipType.Normal = [0, 1, 0]
     return cut
 

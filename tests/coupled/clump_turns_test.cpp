@@ -12,12 +12,14 @@
 #include <string>
 #include <vector>
 
+#include "protocol/wire/ball_union.h"
 #include "tests/support/clump_job.h"
 
 namespace {
 
 using test::Clumps;
 using test::heavy;
+using test::JobResult;
 using test::kLbm;
 using test::kLiggghts;
 using test::mpirun;
@@ -43,6 +45,7 @@ double largest(const Path& path, std::size_t column) {
 double error_of_turn(const Path& path, double inertia, const Columns& column) {
   EXPECT_GT(path.size(), 20U);
   EXPECT_GT(largest(path, column.spin), 0.1);  // rad/s: there is a turn to speak of
+  if (path.size() < 4) return 1.0;
   const double interval = path[1][0] - path[0][0], most = largest(path, column.torque);
   double worst = 0.0;
   for (std::size_t k = 3; k < path.size(); ++k)
@@ -52,41 +55,47 @@ double error_of_turn(const Path& path, double inertia, const Columns& column) {
   return worst / most;
 }
 
-/// Largest differences of two paths over the largest value of each column.
+/// Largest differences of two paths over the largest value of each column; of torques means over
+/// ten intervals, since the cells of a body change at other moments where its place differs.
 struct Difference {
   double velocity = 0.0, spin = 0.0, force = 0.0, torque = 0.0;
 };
 Difference difference(const Path& one, const Path& other, const Columns& column) {
   EXPECT_EQ(one.size(), other.size());
-  const auto of = [&](std::size_t c) {
+  const auto of = [&](std::size_t c, std::size_t window) {
     double most = 0.0;
-    for (std::size_t k = 0; k < std::min(one.size(), other.size()); ++k)
-      most = std::max(most, std::abs(one[k][c] - other[k][c]));
+    for (std::size_t k = 0; k + window <= std::min(one.size(), other.size()); ++k) {
+      double sum = 0.0;
+      for (std::size_t i = k; i < k + window; ++i) sum += one[i][c] - other[i][c];
+      most = std::max(most, std::abs(sum) / static_cast<double>(window));
+    }
     return most / largest(other, c);
   };
-  return {of(column.velocity), of(column.spin), of(column.force), of(column.torque)};
+  return {of(column.velocity, 1), of(column.spin, 1), of(column.force, 1), of(column.torque, 10)};
 }
 
-void expect_alike(const char* what, const Difference& d, double off) {
+/// @param off_torque  of means of a torque that jumps by a tenth as cells change
+void expect_alike(const char* what, const Difference& d, double off, double off_torque) {
   std::printf("%s: velocity %.2g, angular velocity %.2g, force %.2g, torque %.2g of the largest\n",
               what, d.velocity, d.spin, d.force, d.torque);
   EXPECT_LT(d.velocity, off);
   EXPECT_LT(d.spin, off);
   EXPECT_LT(d.force, off);
-  EXPECT_LT(d.torque, off);
+  EXPECT_LT(d.torque, off_torque);
 }
 
 TEST_F(Clumps, TurnByTheTorqueOfTheirLoadsByMultisphereAndByRigidAlike) {
   // A larger and a smaller sphere, side by side: the fluid holds the smaller one back. They overlap
-  // by a micrometre, so that they are one clump for fix rigid, and no lens counts twice.
+  // by little more than a hundredth, from which on they are one clump for fix rigid; the lens that
+  // counts twice is 1e-4 of the volume.
   std::string scene = test::replaced(heavy(2000), "probe_every = 0.005\n", "");
   scene = test::replaced(scene, "end_time = 0.05", "end_time = 0.02");
   scene = test::replaced(scene, "diameter = 0.003", "diameter = [0.0018, 0.003]");
   scene = test::replaced(scene, "density = 2000.000000", "density = [1990.0, 2010.0]");
-  const double m = 4.0 / 3.0 * std::numbers::pi * 2000.0, a = 1.5e-3, b = 0.9e-3, apart = 2.399e-3;
+  const double m = 4.0 / 3.0 * std::numbers::pi * 2000.0, a = 1.5e-3, b = 0.9e-3, apart = 2.37e-3;
   const double ma = m * a * a * a, mb = m * b * b * b;
   const double inertia = 0.4 * (ma * a * a + mb * b * b) + ma * mb / (ma + mb) * apart * apart;
-  folder_.write("two.txt", "-0.75 0 0 1.5\n1.649 0 0 0.9\n");
+  folder_.write("two.txt", "-0.75 0 0 1.5\n1.62 0 0 0.9\n");
   test::expect_end(run(multisphere("2000"), scene, 1, 1, "--out of_multisphere"), 100.0, 0, {});
   const auto spheres = rows("of_multisphere", false);
   ASSERT_GT(spheres.size(), 2U);
@@ -108,8 +117,8 @@ TEST_F(Clumps, TurnByTheTorqueOfTheirLoadsByMultisphereAndByRigidAlike) {
   std::printf("change of I Ω against M T: %.2g (fix multisphere), %.2g (fix rigid)\n", by_samples,
               by_spheres);
   EXPECT_LT(by_samples, 0.01);
-  EXPECT_LT(by_spheres, 1e-5);
-  expect_alike("fix rigid against fix multisphere", difference(exact, sampled, kSpace), 0.01);
+  EXPECT_LT(by_spheres, 1e-4);  // about y; the walls, nearer on one side, turn it a little about x
+  expect_alike("fix rigid against fix multisphere", difference(exact, sampled, kSpace), 0.01, 0.01);
 }
 
 constexpr const char* kFlatScene = R"(title = "a clump of two discs"
@@ -122,11 +131,10 @@ gravity = [0.0, -9.81]
 velocity_scale = 0.1
 [particles]
 diameter = [0.0012, 0.002]
-density = [1490, 1510]
+density = 1500.0
 start = [[0.0098, 0.0202]]
 [particles.variables]
-clump = "0,0,0,0.001:0.001599,0,0,0.0006"
-density_of_clump = 1500
+clump = "0,0,0,0.001:0.00158,0,0,0.0006"
 [numerics]
 cell = 0.0002
 [coupling]
@@ -136,8 +144,8 @@ timeout = 30.0
 end_time = 0.03
 )";
 
-/// Places, mass and inertia of the discs come as text: x, x, y; diameters and density; and the
-/// lines of a file for fix rigid, which takes discs as spheres by itself.
+/// DISCS are made by disc_lines; fix rigid, which takes discs for spheres and counts what two share
+/// twice, has mass, centre and inertia from a file.
 constexpr const char* kFlatScript = R"(dimension 2
 units si
 atom_style granular
@@ -170,35 +178,63 @@ fix flat all enforce2d
 run ${solid_steps_total}
 )";
 
-TEST_F(Clumps, OfDiscsTurnByRigidAsByAnEngine) {
-  const double a = 1e-3, b = 0.6e-3, apart = 1.599e-3, m = std::numbers::pi * 1500.0;
-  const double ma = m * a * a, mb = m * b * b, x = 0.0098, y = 0.0202;
-  const double inertia = 0.5 * (ma * a * a + mb * b * b) + ma * mb / (ma + mb) * apart * apart;
-  const double left = x - mb / (ma + mb) * apart;
-  std::string discs;
-  for (int k = 0; k < 2; ++k)
-    discs += fmt::format(
-        "create_atoms 1 single {:.12g} {:.12g} 0.0 units box\n"
-        "set atom {} diameter {} density 1500\n",
-        left + k * apart, y, k + 1, k == 0 ? 2.0 * a : 2.0 * b);
-  folder_.write("body.txt", fmt::format("1\n1 {:.12g} {:.12g} {:.12g} 0 1 1 {:.12g} 0 0 0\n",
-                                        ma + mb, x, y, inertia));
-  folder_.write("scene.toml", kFlatScene);
-  folder_.write("in.liggghts", test::replaced(kFlatScript, "DISCS\n", discs));
-  const auto couple = [&](const std::string& solid, const std::string& out) {
-    test::expect_end(
-        test::run(mpirun({kLbm + " --progress none --out " + out}, {solid}), folder_.path(), 100.0),
-        100.0, 0, {});
-  };
-  couple(kLiggghts + " -in in.liggghts", "of_rigid");
-  couple("/usr/bin/python3 " BPLBM_SOURCE_DIR "/tools/engines/python/clump_engine.py", "of_engine");
+/// The clump of that scene: a larger and a smaller disc that overlap by little more than a
+/// hundredth, at the start of the scene.
+class FlatClump : public Clumps {
+ protected:
+  FlatClump() {
+    const std::vector<protocol::Ball> balls{{0, {0.0, 0.0, 0.0}, kRadii[0]},
+                                            {1, {kApart, 0.0, 0.0}, kRadii[1]}};
+    const auto whole = protocol::moments_of_union(balls, 2);
+    const double centre = whole.centroid[0];
+    mass_ = 1500.0 * whole.volume;
+    inertia_ = mass_ * (whole.second[0] + whole.second[1] - centre * centre);
+    left_ = 0.0098 - centre;
+    of_discs_ = {mass_ * (1.0 - centre / kApart), mass_ * centre / kApart};
+    folder_.write("body.txt",
+                  fmt::format("1\n1 {0:.12g} 0.0098 0.0202 0 {1:.12g} {1:.12g} {1:.12g} "
+                              "0 0 0\n",
+                              mass_, inertia_));
+    folder_.write("scene.toml", kFlatScene);
+  }
+  /// @param heavier  factor of the masses of the discs
+  JobResult couple(const std::string& solid, const std::string& out, double heavier = 1.0) {
+    std::string discs;
+    for (int k = 0; k < 2; ++k)
+      discs += fmt::format(
+          "create_atoms 1 single {:.12g} 0.0202 0.0 units box\n"
+          "set atom {} diameter {} density {:.12g}\n",
+          left_ + k * kApart, k + 1, 2.0 * kRadii[k],
+          heavier * of_discs_[k] / (std::numbers::pi * kRadii[k] * kRadii[k]));
+    folder_.write("in.liggghts", test::replaced(kFlatScript, "DISCS\n", discs));
+    return test::run(mpirun({kLbm + " --progress none --out " + out}, {solid}), folder_.path(),
+                     100.0);
+  }
+  static constexpr double kRadii[] = {1e-3, 0.6e-3}, kApart = 1.58e-3;
+  double mass_, inertia_, left_;
+  std::array<double, 2> of_discs_;  // masses with the sum and the centre of the body
+};
+
+TEST_F(FlatClump, TurnsByRigidAsByAnEngine) {
+  test::expect_end(couple(kLiggghts + " -in in.liggghts", "of_rigid"), 100.0, 0, {});
+  const std::string engine =
+      "/usr/bin/python3 " BPLBM_SOURCE_DIR "/tools/engines/python/clump_engine.py";
+  test::expect_end(couple(engine, "of_engine"), 100.0, 0, {});
   const Path rigid = rows("of_rigid", true);
-  const Path engine = rows_where("of_engine", [](double id) { return id == 1.0; });
-  const double error = error_of_turn(rigid, inertia, kPlane);
+  const Path other = rows_where("of_engine", [](double id) { return id == 1.0; });
+  const double error = error_of_turn(rigid, inertia_, kPlane);
   std::printf("change of I Ω against M T: %.2g (fix rigid, discs)\n", error);
   EXPECT_LT(error, 1e-5);
   // The engine steps velocity first, LIGGGHTS in half-steps: a step apart.
-  expect_alike("fix rigid against the engine", difference(rigid, engine, kPlane), 0.01);
+  expect_alike("fix rigid against the engine", difference(rigid, other, kPlane), 0.01, 0.02);
+}
+
+// fix gravity weighs the spheres, whatever the file of fix rigid says: a clump fell too fast by
+// what its spheres share.
+TEST_F(FlatClump, OfRigidWhoseDiscsWeighOtherwiseIsRefused) {
+  test::expect_end(couple(kLiggghts + " -in in.liggghts", "out", 1.01), 30.0, 2,
+                   {"fix gravity weighs the spheres of fix move rigid", "body 1 have 0.0064680",
+                    "give the spheres densities with which both agree"});
 }
 
 }  // namespace
