@@ -6,7 +6,8 @@ intact bonds; broken bonds are hidden.
     paraview --script=view.py                  the same scene, ready, in the program
 
 Without a screen it draws on one that xvfb-run (Debian: xvfb, xauth) makes. In three dimensions the fluid is cut at the middle of
-the box, and what lies in front of the cut is left out. Light grey in the plane is what solids cover of it.
+the box, and what lies in front of the cut is left out. Light grey in the plane is what solids cover of it. Beside it stand all
+solids whole, without the fluid, and walls that can be looked through.
 """
 
 import argparse
@@ -75,7 +76,8 @@ def fluid_and_solids(fluid, flat, bounds):
         plane.SliceType.Normal = [0, 1, 0]
     if not fluid.CellData.GetArray("solid_fraction"):
         return plane, None
-    return half_covered(plane, "solid_fraction", False, "fluid without solids"), half_covered(plane, "solid_fraction", True, "solids in the plane")
+    parts = (False, "fluid without solids"), (True, "solids in the plane")
+    return [half_covered(plane, "solid_fraction", *part) for part in parts]
 
 
 def half_covered(cells, array, solid, name):
@@ -123,8 +125,8 @@ def colour(display, view, fluid, field, largest):
 
 
 def behind(points, flat, bounds):
-    """Grains, ends of bonds or walls that the cut of the fluid leaves to be seen."""
-    if flat:
+    """Grains, ends of bonds or walls that the cut of the fluid leaves to be seen; all of them without bounds."""
+    if flat or bounds is None:
         return points
     cut = pv.Clip(Input=points, ClipType="Plane", Invert=0)
     cut.ClipType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
@@ -137,6 +139,8 @@ def glyphs(points, flat, part, name):
     """A disc or sphere at each point. part: of its radius."""
     glyph = pv.Glyph(Input=points, GlyphType="Cylinder" if flat else "Sphere", ScaleArray=["POINTS", "radius"],
                      ScaleFactor=2.0 * part, OrientationArray=["POINTS", "No orientation array"], GlyphMode="All Points")
+    if not flat:
+        glyph.GlyphType.ThetaResolution = glyph.GlyphType.PhiResolution = 16
     if flat:
         glyph.GlyphType.Resolution, glyph.GlyphType.Height = 24, 1e-4
         glyph.GlyphTransform.Rotate = [90.0, 0.0, 0.0]
@@ -163,7 +167,8 @@ def show_balls(view, flat, bounds, cell, name, words, rgb):
         shown = behind(balls, flat, bounds)
         if flat:
             plain(glyphs(shown, flat, 1.0, f"rims of {words}"), view, DARK, 0.2 * cell)
-        plain(glyphs(shown, flat, 0.9 if flat else 1.0, words), view, rgb, 0.3 * cell * flat)
+        display = plain(glyphs(shown, flat, 0.9 if flat else 1.0, words), view, rgb, 0.3 * cell * flat)
+        display.Opacity = 0.35 if not flat and bounds is None and block("bonds") else 1.0  # bonds lie inside of grains
 
 
 def show_obstacles(view, flat, bounds, cell, fluid, covered):
@@ -173,11 +178,14 @@ def show_obstacles(view, flat, bounds, cell, fluid, covered):
         display.Ambient, display.Diffuse = 1.0, 0.0
     if fluid.CellData.GetArray("image_fraction"):
         whole = half_covered(fluid, "image_fraction", True, "image")
-        display = plain(named(behind(whole, flat, bounds), "image behind the plane"), view, STONE, 0.05 * cell * flat)
+        name = "image behind the plane" if bounds else "image whole"
+        display = plain(named(behind(whole, flat, bounds), name), view, STONE, 0.05 * cell * flat)
         display.SetRepresentationType("Surface")
     walls = block("walls")
     if walls:
-        plain(named(behind(walls, flat, bounds), "walls behind the plane"), view, DARK if flat else STONE, 0.35 * cell * flat, 2.0)
+        display = plain(named(behind(walls, flat, bounds), "walls behind the plane" if bounds else "walls whole"), view,
+                        DARK if flat else STONE, 0.35 * cell * flat, 2.0)
+        display.Opacity = 1.0 if bounds else 0.4
     show_balls(view, flat, bounds, cell, "round_obstacles", "round obstacles", STONE)
 
 
@@ -187,6 +195,28 @@ def show_solids(view, flat, bounds, cell, broken):
         bonds = block(name)
         if bonds:
             plain(behind(bonds, flat, bounds), view, rgb, 0.4 * cell * flat, 2.0).Visibility = int(visible)
+
+
+def beside(view, fluid, cell, broken):
+    """A second view of three dimensions: all solids whole."""
+    other = pv.CreateRenderView()
+    pv.AssignViewToLayout(view=other, layout=pv.GetLayout(view), hint=0)
+    white(other)
+    show_obstacles(other, False, None, cell, fluid, None)
+    show_solids(other, False, None, cell, broken)
+    frame(other, fluid)
+    return other
+
+
+def white(view):
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    view.OrientationAxesVisibility = 0
+
+
+def frame(view, fluid):
+    box = pv.Show(named(pv.Outline(Input=fluid), "box"), view)
+    box.AmbientColor = box.DiffuseColor = [0.3, 0.3, 0.3]
 
 
 def look(view, flat, bounds):
@@ -209,9 +239,7 @@ def main():
     args = arguments()
     need_screen()
     view = pv.GetActiveViewOrCreate("RenderView")
-    view.UseColorPaletteForBackground = 0
-    view.Background = [1, 1, 1]
-    view.OrientationAxesVisibility = 0
+    white(view)
     fluid = block("fluid")
     if fluid.CellData.GetArray(args.field) is None:
         sys.exit(f"view | error | the fields of this run have no {args.field}; a scene's output.viscosity = true writes it")
@@ -227,19 +255,23 @@ def main():
     cell = (bounds[1] - bounds[0]) / (cells[1] - cells[0])
     show_obstacles(view, flat, bounds, cell, fluid, covered)
     show_solids(view, flat, bounds, cell, args.broken)
-    box = pv.Show(named(pv.Outline(Input=fluid), "box"), view)
-    box.AmbientColor = box.DiffuseColor = [0.3, 0.3, 0.3]
+    frame(view, fluid)
     label = pv.Show(pv.AnnotateTimeFilter(Input=fluid, Format="t = {time:.4g} s"), view)
     label.Color, label.FontSize, label.WindowLocation = [0, 0, 0], 14, "Lower Right Corner"
+    solids = fluid.CellData.GetArray("solid_fraction") is not None
+    views = [view] if flat or not solids else [view, beside(view, fluid, cell, args.broken)]
+    for each in views:
+        look(each, flat, bounds)
     scene = pv.GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
     scene.AnimationTime = times[-1] if args.time is None else min(times, key=lambda t: abs(t - args.time))
-    look(view, flat, bounds)
     if paraview.fromGUI:
-        pv.Render(view)
-    else:
-        pv.SaveScreenshot(args.out, view, ImageResolution=view.ViewSize)
-        print(f"view | picture {args.out}")
+        pv.RenderAllViews()
+        return
+    size = [len(views) * view.ViewSize[0], view.ViewSize[1]]
+    pv.GetLayout(view).SetSize(*size)
+    pv.SaveScreenshot(args.out, pv.GetLayout(view), ImageResolution=size)
+    print(f"view | picture {args.out}")
 
 
 main()

@@ -3,6 +3,7 @@
 /// scene that has none.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +40,10 @@ class ShownObstaclesTest : public testing::Test {
     RunOptions options;
     options.out = folder_.path();
     Log log;
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(1);  // a box so small waits for its threads only
     run_alone(s, plan, Decomposition(plan.domain), options, log);
+    omp_set_num_threads(threads);
     end_ = 0.02;
   }
   bool has(int frame, const std::string& name) const {
