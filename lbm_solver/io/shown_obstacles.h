@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <hdf5.h>
-
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lbm_solver/base/motion.h"
 #include "lbm_solver/base/scene.h"
+#include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
 
