@@ -108,8 +108,10 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
       last_progress_(start_) {
   const double keep = time_of(first) - 0.5 * plan.interval();  // lines before this time
   intervals_done_ = first;
-  if (scene.output.fields_every > 0.0)
+  if (scene.output.fields_every > 0.0) {
     field_times_.emplace(scene.output.fields_every, plan.interval());
+    images_ = image_solids(scene, plan);
+  }
   const bool flat = scene.box.dimension == 2;
   if (!scene.obstacles.empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
   if (HeldFlow::wanted_by(scene)) flow_.emplace(scene, plan, ranks, folder, keep);
@@ -123,7 +125,8 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
                     flat ? "time [s],x [m],y [m],pressure [Pa],ux [m/s],uy [m/s]"
                          : "time [s],x [m],y [m],z [m],pressure [Pa],ux [m/s],uy [m/s],uz [m/s]",
                     keep);
-  if (field_times_) fields_.emplace(folder, plan.units, scene.box.dimension, keep);
+  if (field_times_)
+    fields_.emplace(folder, plan.units, scene.box.dimension, keep, ShownObstacles(scene));
 }
 
 std::int64_t Observers::next_look(std::int64_t state) const {
@@ -336,6 +339,8 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   FieldFrame frame;
   frame.time = time;
   frame.cells = shown_cells(fluid, plan_, scene_.output.viscosity);
+  if (!images_.empty() && ranks_.max(fields_ && fields_->at_first() ? 1.0 : 0.0) > 0.0)
+    add_images(images_, fluid, frame.cells);
   if (fluid.cover()) frame.flux = mean_arrived_momentum(fluid) * plan_.units.velocity();
   if (particles) add_particles(*particles, frame);
   if (fields_)

@@ -96,6 +96,7 @@ void FixLbmCouple::setup_pre_exchange() {
   if (clumps_.in_part(groupbit))
     fail("its group holds some spheres of clumps and leaves others out; give it all of them");
   checks.refuse_overlaps(groupbit, clumps_.carriers());
+  clumps_.refuse_wrong_weight();
 }
 
 /// The end of LIGGGHTS' set-up: of a run, or, within one, of `set_up_again`.
