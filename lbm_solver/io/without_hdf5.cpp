@@ -31,7 +31,9 @@ Record read_record(const std::string& path) {
   refuse(path);
 }
 
-FieldWriter::FieldWriter(const std::string& folder, const Units&, int, double) {
+ShownObstacles::ShownObstacles(const Scene&) {}
+
+FieldWriter::FieldWriter(const std::string& folder, const Units&, int, double, ShownObstacles) {
   refuse(folder + "/fields.h5");
 }
 void FieldWriter::write(const FieldFrame&, const Decomposition&) {}
