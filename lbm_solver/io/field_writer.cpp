@@ -169,9 +169,11 @@ bool FieldWriter::keep_frames(double until) {
     const auto along = [&](int axis) {  // x last
       return axis < dimension_ ? static_cast<int>(cells[dimension_ - 1 - axis]) : 1;
     };
-    entries_.push_back({time, along(0), along(1), along(2), shape_of(group, "solid_fraction")[0] > 0,
-                        shape_of(group, "viscosity")[0] > 0, shape_of(group, "image_fraction")[0] > 0,
-                        shape_of(group, "particle_carrier")[0] > 0, shape_of(group, "particles")[0], bond_states(group)});
+    entries_.push_back(
+        {time, along(0), along(1), along(2), shape_of(group, "solid_fraction")[0] > 0,
+         shape_of(group, "viscosity")[0] > 0, shape_of(group, "image_fraction")[0] > 0,
+         shape_of(group, "particle_carrier")[0] > 0, shape_of(group, "particles")[0],
+         bond_states(group)});
     if (entries_.size() == 1 && !obstacles_.lie_in(group)) obstacles_ = {};
   }
   for (std::size_t i = entries_.size();; ++i) {
