@@ -390,13 +390,18 @@ Summary Observers::summary(double wall_seconds) const {
   s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(cells);
   s.parameters = scene_parameters(scene_, plan_);
   if (flow_) flow_->describe(s.parameters);
-  if (viscosity_) {
-    s.parameters["share_at_rest_bound"] = viscosity_->at_rest_bound;
-    s.parameters["share_at_shear_bound"] = viscosity_->at_shear_bound;
-    s.parameters["shear_rate_max"] = viscosity_->largest_shear / plan_.units.dt;
-    s.parameters["mean_viscosity"] =
-        viscosity_->mean_viscosity * plan_.units.dx * plan_.units.dx / plan_.units.dt;
-  }
+  if (viscosity_)
+    s.parameters.insert({{"share_at_rest_bound", viscosity_->at_rest_bound},
+                         {"share_at_shear_bound", viscosity_->at_shear_bound},
+                         {"shear_rate_max", viscosity_->largest_shear / plan_.units.dt},
+                         {"mean_viscosity", viscosity_->mean_viscosity * plan_.units.dx *
+                                                plan_.units.dx / plan_.units.dt}});
+  if (scene_.box.dimension == 3)
+    s.parameters.insert({{"box_z", scene_.box.size.z()}, {"gravity_z", scene_.fluid.gravity.z()}});
+  if (scene_.particles)
+    s.parameters.insert({{"diameter", scene_.particles->diameter.hi},
+                         {"particle_density", scene_.particles->density.hi},
+                         {"cells_per_diameter", plan_.cells_per_diameter}});
   return s;
 }
 
