@@ -396,12 +396,6 @@ Summary Observers::summary(double wall_seconds) const {
                          {"shear_rate_max", viscosity_->largest_shear / plan_.units.dt},
                          {"mean_viscosity", viscosity_->mean_viscosity * plan_.units.dx *
                                                 plan_.units.dx / plan_.units.dt}});
-  if (scene_.box.dimension == 3)
-    s.parameters.insert({{"box_z", scene_.box.size.z()}, {"gravity_z", scene_.fluid.gravity.z()}});
-  if (scene_.particles)
-    s.parameters.insert({{"diameter", scene_.particles->diameter.hi},
-                         {"particle_density", scene_.particles->density.hi},
-                         {"cells_per_diameter", plan_.cells_per_diameter}});
   return s;
 }
 
