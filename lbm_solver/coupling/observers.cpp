@@ -374,28 +374,27 @@ std::string Observers::speed_text() const {
 
 Summary Observers::summary(double wall_seconds) const {
   Summary s;
-  const long cells = static_cast<long>(plan_.domain.nx) * plan_.domain.ny * plan_.domain.nz;
-  s.cells = cells;
+  s.cells = static_cast<long>(plan_.domain.nx) * plan_.domain.ny * plan_.domain.nz;
   s.steps = static_cast<long>(intervals_done_) * plan_.fluid_steps;
   s.substeps = plan_.substeps;
   s.physical_seconds = time_of(intervals_done_);
   s.wall_seconds = wall_seconds;
-  s.mlups = static_cast<double>(cells) * static_cast<double>(intervals_done_ - first_) *
+  s.mlups = static_cast<double>(s.cells) * static_cast<double>(intervals_done_ - first_) *
             plan_.fluid_steps / wall_seconds * 1e-6;
   s.writing = writing_;
   s.ma_max = max_speed_ * std::numbers::sqrt3;
   s.ma_paper = max_speed_;
   s.re = plan_.reynolds;
   s.re_h = plan_.reynolds_cell;
-  s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(cells);
+  s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(s.cells);
   s.parameters = scene_parameters(scene_, plan_);
   if (flow_) flow_->describe(s.parameters);
-  if (viscosity_)
-    s.parameters.insert({{"share_at_rest_bound", viscosity_->at_rest_bound},
-                         {"share_at_shear_bound", viscosity_->at_shear_bound},
-                         {"shear_rate_max", viscosity_->largest_shear / plan_.units.dt},
-                         {"mean_viscosity", viscosity_->mean_viscosity * plan_.units.dx *
-                                                plan_.units.dx / plan_.units.dt}});
+  if (!viscosity_) return s;
+  const double unit = plan_.units.dx * plan_.units.dx / plan_.units.dt;
+  s.parameters.insert({{"share_at_rest_bound", viscosity_->at_rest_bound},
+                       {"share_at_shear_bound", viscosity_->at_shear_bound},
+                       {"shear_rate_max", viscosity_->largest_shear / plan_.units.dt},
+                       {"mean_viscosity", viscosity_->mean_viscosity * unit}});
   return s;
 }
 
