@@ -14,6 +14,7 @@
 #include "lbm_solver/coupling/hello.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/coupling/run.h"
+#include "lbm_solver/io/hdf5_files.h"
 #include "lbm_solver/io/output_folder.h"
 #include "lbm_solver/io/scene_keys.h"
 #include "lbm_solver/io/scene_reader.h"
@@ -23,7 +24,7 @@
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 #include "protocol/transport/mpi_channel.h"
-#include "protocol/transport/trace.h"
+#include "protocol/transport/recording.h"
 #include "protocol/wire/numbers.h"
 
 namespace {
@@ -204,6 +205,13 @@ double connect_timeout(const std::optional<Scene>& scene) {
   return scene && scene->coupling ? scene->coupling->connect_timeout : -1.0;
 }
 
+/// Options whose files lbm may have been built without. @throws InputError
+void check_files(const Options& o) {
+  if (has_hdf5()) return;
+  if (!o.record.empty()) throw InputError("--record", kNeedsHdf5, kWithoutHdf5);
+  if (!o.run.restart.from.empty()) throw InputError("--restart", kNeedsHdf5, kWithoutHdf5);
+}
+
 /// @param channel  set as soon as there is a partner, so that an error can be told to it
 void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol::World& world) {
   std::exception_ptr mistake;  // in the scene: said when there is a partner who can hear it
@@ -216,6 +224,7 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   world = protocol::connect(protocol::Role::Fluid, connect_timeout(read));
   if (world.coupled()) channel = protocol::make_mpi_channel(world, protocol::Role::Fluid);
   if (o.threads == 0) check_environment();
+  check_files(o);
   if (mistake) std::rethrow_exception(mistake);
   const Scene& scene = *read;
   protocol::limit_waits(scene.coupling
@@ -239,10 +248,7 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   const Decomposition ranks = work ? of_equal_work(blocks, *work) : blocks;
   const std::unique_ptr<OutputFolder> folder = take_folder(o, scene, ranks);
   if (!o.record.empty())
-    channel = protocol::make_recording_channel(
-        std::move(channel),
-        std::make_unique<protocol::TraceWriter>(trace_of(o.record, ranks), "fluid", ranks.rank(),
-                                                world.partner_ranks));
+    protocol::record_to(trace_of(o.record, ranks), channel, "fluid", ranks.rank());
   set_threads(o.threads);
   Log log = ranks.rank() == 0 ? Log(o.run.out, progress_style(o.progress)) : Log();
   if (folder && !folder->set_aside().empty())

@@ -320,7 +320,7 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   if (fields_)
     fields_->write(frame, ranks_);
   else
-    lbm::write_fields(-1, frame.cells, scene_.box.dimension, ranks_);
+    send_fields(frame.cells, ranks_);
   writing_["fields"] += seconds_since(begin);
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lbm_solver/immersed/geometry.h"
-#include "lbm_solver/io/cell_set.h"
+#include "lbm_solver/io/cell_fields.h"
 #include "lbm_solver/solver/fluid.h"
 #include "lbm_solver/solver/plan.h"
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "lbm_solver/io/cell_set.h"
 #include "lbm_solver/io/hdf5_array.h"
 #include "lbm_solver/io/view_script.h"
 #include "protocol/transport/hdf5_file.h"
@@ -84,12 +85,52 @@ std::string group_name(std::size_t index) {
   return fmt::format("frame{:06}", index);
 }
 
+/// The table of particles, and by columns, as ParaView wants them.
+void write_particles(hid_t group, const FieldFrame& f, int dimension) {
+  const bool flat = dimension == 2;
+  const std::size_t count = f.particles.size();
+  std::vector<double> table, places;
+  for (const Particle& p : f.particles) {
+    append_row(table, p, flat);
+    places.insert(places.end(), p.state.x.begin(), p.state.x.begin() + dimension);
+  }
+  write_array(group, "particles", table, {count, flat ? hsize_t{8} : hsize_t{12}},
+              flat ? "1,m,m,m,m/s,m/s,rad/s,1" : "1,m,m,m,m,m/s,m/s,m/s,rad/s,rad/s,rad/s,1",
+              flat ? "id,x,y,radius,vx,vy,omega,type"
+                   : "id,x,y,z,radius,vx,vy,vz,omega_x,omega_y,omega_z,type");
+  if (count == 0) return;
+  std::vector<double> carriers;
+  for (const Particle& p : f.particles)
+    carriers.push_back(static_cast<double>(protocol::carrier_of(p.shape)));
+  if (has_clumps(f)) write_array(group, "particle_carrier", carriers, {count}, "1");
+  write_array(group, "particle_places", places, {count, static_cast<hsize_t>(dimension)}, "m");
+  for (const PointValue& value : kPointValues) {
+    std::vector<double> column;
+    for (std::size_t i = 0; i < count; ++i) value.append(column, f.particles[i], f.loads[i]);
+    std::vector<hsize_t> shape{count};
+    if (value.components > 1) shape.push_back(value.components);
+    write_array(group, (std::string("particle_") + value.name).c_str(), column, shape, value.unit);
+  }
+}
+
+void write_obstacles(hid_t group, const std::vector<ShownObstacles::Array>& arrays) {
+  for (const auto& [name, unit, columns, values] : arrays)
+    std::visit(
+        [&](const auto& numbers) {
+          std::vector<hsize_t> shape{numbers.size() / columns};
+          if (columns > 1) shape.push_back(columns);
+          write_array(group, name, numbers, shape, unit);
+        },
+        values);
+}
+
 }  // namespace
 
 FieldWriter::FieldWriter(const std::string& folder, const Units& units, int dimension,
                          double keep_until, ShownObstacles obstacles)
     : folder_(folder), units_(units), dimension_(dimension), obstacles_(std::move(obstacles)) {
-  write_view();
+  // not needed for the run: where it cannot be written, the tables say that the disk is full
+  std::ofstream(folder_ + "/view.py") << kViewScript;
   if (keep_until > 0.0 && keep_frames(keep_until)) return;
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Create);
   protocol::hdf5::set_attribute(file, "cell", units.dx);
@@ -141,7 +182,9 @@ bool FieldWriter::keep_frames(double until) {
     entries_.push_back({time, along(0), along(1), along(2), rows("solid_fraction")[0] > 0,
                         rows("viscosity")[0] > 0, rows("image_fraction")[0] > 0,
                         rows("particle_carrier")[0] > 0, rows("particles")[0], bond_states(group)});
-    if (entries_.size() == 1 && !obstacles_.lie_in(group)) obstacles_ = {};
+    const auto first = obstacles_.arrays(time, entries_.size() == 1);
+    if (std::ranges::any_of(first, [&](const auto& array) { return rows(array.name)[0] == 0; }))
+      obstacles_ = {};  // a run of a version without them
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
@@ -171,8 +214,8 @@ void FieldWriter::write(const FieldFrame& f, const Decomposition& ranks) {
                     f.particles.size(),
                     f.bond_state};
   write_fields(group, f.cells, dimension_, ranks);
-  write_particles(group, f);
-  obstacles_.write(group, f.time, at_first());
+  write_particles(group, f, dimension_);
+  write_obstacles(group, obstacles_.arrays(f.time, at_first()));
   if (bonds > 0) {
     const auto d = static_cast<hsize_t>(dimension_);
     write_array(group, "bond_ends", f.bond_ends, {2 * bonds, d}, "m");
@@ -181,34 +224,6 @@ void FieldWriter::write(const FieldFrame& f, const Decomposition& ranks) {
   }
   entries_.push_back(entry);
   write_xdmf();
-}
-
-/// The table of particles, and by columns, as ParaView wants them.
-void FieldWriter::write_particles(hid_t group, const FieldFrame& f) const {
-  const bool flat = dimension_ == 2;
-  const std::size_t count = f.particles.size();
-  std::vector<double> table, places;
-  for (const Particle& p : f.particles) {
-    append_row(table, p, flat);
-    places.insert(places.end(), p.state.x.begin(), p.state.x.begin() + dimension_);
-  }
-  write_array(group, "particles", table, {count, flat ? hsize_t{8} : hsize_t{12}},
-              flat ? "1,m,m,m,m/s,m/s,rad/s,1" : "1,m,m,m,m,m/s,m/s,m/s,rad/s,rad/s,rad/s,1",
-              flat ? "id,x,y,radius,vx,vy,omega,type"
-                   : "id,x,y,z,radius,vx,vy,vz,omega_x,omega_y,omega_z,type");
-  if (count == 0) return;
-  std::vector<double> carriers;
-  for (const Particle& p : f.particles)
-    carriers.push_back(static_cast<double>(protocol::carrier_of(p.shape)));
-  if (has_clumps(f)) write_array(group, "particle_carrier", carriers, {count}, "1");
-  write_array(group, "particle_places", places, {count, static_cast<hsize_t>(dimension_)}, "m");
-  for (const PointValue& value : kPointValues) {
-    std::vector<double> column;
-    for (std::size_t i = 0; i < count; ++i) value.append(column, f.particles[i], f.loads[i]);
-    std::vector<hsize_t> shape{count};
-    if (value.components > 1) shape.push_back(value.components);
-    write_array(group, (std::string("particle_") + value.name).c_str(), column, shape, value.unit);
-  }
 }
 
 /// Cells of a frame, x last.
@@ -380,11 +395,6 @@ void FieldWriter::write_xdmf() const {
         return obstacles_.round_grid(entries_[i].time, group_name(0), group_name(i));
       });
   out << "</Domain></Xdmf>\n";
-}
-
-/// Not needed for the run: where it cannot be written, the tables say that the disk is full.
-void FieldWriter::write_view() const {
-  std::ofstream(folder_ + "/view.py") << kViewScript;
 }
 
 }  // namespace lbm

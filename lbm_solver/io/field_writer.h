@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "lbm_solver/base/units.h"
-#include "lbm_solver/io/cell_set.h"
+#include "lbm_solver/io/cell_fields.h"
 #include "lbm_solver/io/shown_obstacles.h"
-#include "protocol/transport/hdf5_file.h"
 #include "protocol/wire/session.h"
 
 namespace lbm {
@@ -46,12 +45,11 @@ class FieldWriter {
               double keep_until = 0.0, ShownObstacles obstacles = {});
   /// The next frame is the first one of its file.
   bool at_first() const { return entries_.empty(); }
-  /// Collective: other ranks than the first, which alone has a writer, call `write_fields`.
+  /// Collective: other ranks than the first, which alone has a writer, call `send_fields`.
   void write(const FieldFrame& frame, const Decomposition& ranks);
 
  private:
   void write_xdmf() const;
-  void write_view() const;
   std::string nothing(const char* name, double time) const;
   std::string fluid_grid(std::size_t index) const;
   std::string particle_grid(std::size_t index) const;
@@ -66,7 +64,6 @@ class FieldWriter {
   };
   std::vector<unsigned long long> shape(const Entry& entry) const;
   std::string shape_text(const Entry& entry, int more) const;
-  void write_particles(hid_t group, const FieldFrame& frame) const;
 
   std::string folder_;
   Units units_;

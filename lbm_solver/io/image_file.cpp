@@ -17,8 +17,11 @@
 #include <span>
 #include <stdexcept>
 
+#include "lbm_solver/io/hdf5_files.h"
 #include "lbm_solver/io/picture_file.h"
+#ifdef BPLBM_HDF5
 #include "protocol/transport/hdf5_file.h"
+#endif
 #include "protocol/wire/numbers.h"
 
 namespace lbm {
@@ -164,6 +167,7 @@ GreyImage read_npy(const std::string& path) {
                       descr[0] == '>');
 }
 
+#ifdef BPLBM_HDF5
 GreyImage read_h5(const std::string& path, const std::string& dataset) try {
   using protocol::hdf5::Handle;
   if (dataset.empty()) refuse("may hold many arrays", "name one: dataset = \"/rock\"");
@@ -184,6 +188,11 @@ GreyImage read_h5(const std::string& path, const std::string& dataset) try {
 } catch (const std::runtime_error& error) {
   refuse(error.what(), "look at it with h5dump");
 }
+#else
+GreyImage read_h5(const std::string&, const std::string&) {
+  refuse(kNeedsHdf5, "save it as .npy or .raw, or build lbm with HDF5");
+}
+#endif
 
 /// A voxel that is no number.
 void check_finite(const GreyImage& image) {

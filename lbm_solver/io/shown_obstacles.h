@@ -3,11 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "lbm_solver/base/motion.h"
 #include "lbm_solver/base/scene.h"
-#include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
 
@@ -23,11 +23,14 @@ class ShownObstacles {
 
   bool any_walls() const { return !walls_.parts.empty(); }
   bool any_round() const { return !round_.parts.empty(); }
-  /// Whether the first frame of a file has what later ones refer to.
-  bool lie_in(hid_t first_frame) const;
-
-  /// Into the group of a frame. @param first  it is the first one of its file
-  void write(hid_t group, double time, bool first) const;
+  /// Numbers of a frame.
+  struct Array {
+    const char *name, *unit;
+    std::size_t columns;
+    std::variant<std::vector<double>, std::vector<int>> numbers;
+  };
+  /// @param first  it is the first frame of its file
+  std::vector<Array> arrays(double time, bool first) const;
   /// Grids of a frame for ParaView. @param first, own  names of the first frame and of this one
   std::string walls_grid(double time, const std::string& first, const std::string& own) const;
   std::string round_grid(double time, const std::string& first, const std::string& own) const;

@@ -20,7 +20,7 @@
 #include "liggghts_coupling/host/fix_lbm_couple.h"
 #include "liggghts_coupling/host/script_checks.h"
 #include "liggghts_coupling/host/solid_hello.h"
-#include "protocol/transport/trace.h"
+#include "protocol/transport/recording.h"
 
 namespace dem {
 
@@ -145,11 +145,8 @@ void FixLbmCouple::begin_recording(const std::string& record) const {
   const int rank = comm->me;
   const std::string file = rank == 0 ? record : fmt::format("{}.{}", record, rank);
   try {
-    auto writer =
-        std::make_unique<protocol::TraceWriter>(file, "solid", rank, job.channel->remote_size());
-    for (int r = 0; r < job.channel->remote_size(); ++r)  // came before this script was read
-      writer->record(protocol::Direction::Received, r, encode(job.session->fluid()));
-    job.channel = protocol::make_recording_channel(std::move(job.channel), std::move(writer));
+    const protocol::Bytes handshake = encode(job.session->fluid());  // came before the script
+    protocol::record_to(file, job.channel, "solid", rank, handshake);
   } catch (const std::exception& e) {
     error->one(FLERR, e.what());
   }

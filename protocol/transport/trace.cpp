@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "protocol/transport/recording.h"
 #include "protocol/wire/text.h"
 
 namespace protocol {
@@ -247,6 +248,15 @@ class ReplayChannel final : public Channel {
 std::unique_ptr<Channel> make_recording_channel(std::unique_ptr<Channel> inner,
                                                 std::unique_ptr<TraceWriter> writer) {
   return std::make_unique<RecordingChannel>(std::move(inner), std::move(writer));
+}
+
+void record_to(const std::string& file, std::unique_ptr<Channel>& channel,
+               const std::string& recorder, int local_rank, const Bytes& received) {
+  const int remotes = channel->remote_size();
+  auto writer = std::make_unique<TraceWriter>(file, recorder, local_rank, remotes);
+  for (int r = 0; r < remotes && !received.empty(); ++r)
+    writer->record(Direction::Received, r, received);
+  channel = make_recording_channel(std::move(channel), std::move(writer));
 }
 
 std::unique_ptr<Channel> make_replay_channel(std::shared_ptr<const Trace> trace) {

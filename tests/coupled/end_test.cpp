@@ -130,6 +130,8 @@ TEST(MisuseInC, IsNamedAtOnce) {
       {"send", 2, "bplbm_send: these states are sent; call bplbm_receive"},
       {"goodbye", 2, "bplbm_exchange: bplbm_goodbye was called"},
       {"checkpoint", 2, "bplbm_checkpoint: the last loads did not ask for one"},
+      {"clump", 2, "bplbm_clump: sphere 2 is at (0, 0, 0) m with a radius of -1 m"},
+      {"no_clump", 2, "bplbm_clump: give places and radii of at least one sphere"},
       {"code", 1, "has had enough"},
       {"connect", 2, "bplbm_connect: this process is connected already"},
   };

@@ -165,6 +165,16 @@ class Page(Output):
         self.assertIsNone(launcher.hint_of_waiting(0.9, 0.9, 1.0))  # too short to matter
         self.assertIn("for 90% of the time each program waited", launcher.hint_of_waiting(9.4, 9.6, 10.0))
 
+    def test_the_whole_job_takes_the_place_of_the_fluids_own_hint(self):
+        self.write(2)
+        (self.out / "lbm.log").write_text("hint         the fluid waits 98 % of its time for the solid: --solid-ranks\n")
+        hints = lambda: self.page().split("Warnings and hints")[1]  # noqa: E731
+        self.assertIn("the fluid waits 98 %", hints())
+        summary = json.loads((self.out / "summary.json").read_text())
+        (self.out / "summary.json").write_text(json.dumps({**summary, "hint": "each program waited for the other one"}))
+        self.assertNotIn("the fluid waits 98 %", hints())
+        self.assertIn("each program waited", hints())
+
     def test_is_cheap(self):
         self.write(2, frames=100)
         start = time.process_time()
