@@ -2,7 +2,7 @@
 #include "lbm_solver/io/checkpoint.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/field_writer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -66,6 +66,16 @@ void append_row(std::vector<double>& to, const Particle& p, bool flat) {
                          s.omega[0], s.omega[1], s.omega[2], type});
 }
 
+/// Sizes of a data set of a frame that was written before; 0 where there is none.
+std::array<hsize_t, 3> shape_of(hid_t group, const char* name) {
+  if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0, 0};
+  const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open ") + name);
+  const Handle space(H5Dget_space(set), H5Sclose, "read a space");
+  std::array<hsize_t, 3> shape{0, 0, 0};
+  check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read a size");
+  return shape;
+}
+
 /// States of the bonds of a frame that was written before.
 std::vector<double> bond_states(hid_t group) {
   if (H5Lexists(group, "bond_state", H5P_DEFAULT) <= 0) return {};
@@ -113,24 +123,12 @@ void write_particles(hid_t group, const FieldFrame& f, int dimension) {
   }
 }
 
-void write_obstacles(hid_t group, const std::vector<ShownObstacles::Array>& arrays) {
-  for (const auto& [name, unit, columns, values] : arrays)
-    std::visit(
-        [&](const auto& numbers) {
-          std::vector<hsize_t> shape{numbers.size() / columns};
-          if (columns > 1) shape.push_back(columns);
-          write_array(group, name, numbers, shape, unit);
-        },
-        values);
-}
-
 }  // namespace
 
 FieldWriter::FieldWriter(const std::string& folder, const Units& units, int dimension,
                          double keep_until, ShownObstacles obstacles)
     : folder_(folder), units_(units), dimension_(dimension), obstacles_(std::move(obstacles)) {
-  // not needed for the run: where it cannot be written, the tables say that the disk is full
-  std::ofstream(folder_ + "/view.py") << kViewScript;
+  write_view();
   if (keep_until > 0.0 && keep_frames(keep_until)) return;
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Create);
   protocol::hdf5::set_attribute(file, "cell", units.dx);
@@ -167,24 +165,16 @@ bool FieldWriter::keep_frames(double until) {
     const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
     const double time = protocol::hdf5::real_attribute(group, "time");
     if (time >= until) break;
-    const auto rows = [&](const char* name) -> std::array<hsize_t, 3> {
-      if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0, 0};
-      const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open ") + name);
-      const Handle space(H5Dget_space(set), H5Sclose, "read a space");
-      std::array<hsize_t, 3> shape{0, 0, 0};
-      check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read a size");
-      return shape;
-    };
-    const auto cells = rows("pressure");
+    const auto cells = shape_of(group, "pressure");
     const auto along = [&](int axis) {  // x last
       return axis < dimension_ ? static_cast<int>(cells[dimension_ - 1 - axis]) : 1;
     };
-    entries_.push_back({time, along(0), along(1), along(2), rows("solid_fraction")[0] > 0,
-                        rows("viscosity")[0] > 0, rows("image_fraction")[0] > 0,
-                        rows("particle_carrier")[0] > 0, rows("particles")[0], bond_states(group)});
-    const auto first = obstacles_.arrays(time, entries_.size() == 1);
-    if (std::ranges::any_of(first, [&](const auto& array) { return rows(array.name)[0] == 0; }))
-      obstacles_ = {};  // a run of a version without them
+    entries_.push_back(
+        {time, along(0), along(1), along(2), shape_of(group, "solid_fraction")[0] > 0,
+         shape_of(group, "viscosity")[0] > 0, shape_of(group, "image_fraction")[0] > 0,
+         shape_of(group, "particle_carrier")[0] > 0, shape_of(group, "particles")[0],
+         bond_states(group)});
+    if (entries_.size() == 1 && !obstacles_.lie_in(group)) obstacles_ = {};
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
@@ -215,7 +205,7 @@ void FieldWriter::write(const FieldFrame& f, const Decomposition& ranks) {
                     f.bond_state};
   write_fields(group, f.cells, dimension_, ranks);
   write_particles(group, f, dimension_);
-  write_obstacles(group, obstacles_.arrays(f.time, at_first()));
+  obstacles_.write(group, f.time, at_first());
   if (bonds > 0) {
     const auto d = static_cast<hsize_t>(dimension_);
     write_array(group, "bond_ends", f.bond_ends, {2 * bonds, d}, "m");
@@ -395,6 +385,11 @@ void FieldWriter::write_xdmf() const {
         return obstacles_.round_grid(entries_[i].time, group_name(0), group_name(i));
       });
   out << "</Domain></Xdmf>\n";
+}
+
+/// Not needed for the run: where it cannot be written, the tables say that the disk is full.
+void FieldWriter::write_view() const {
+  std::ofstream(folder_ + "/view.py") << kViewScript;
 }
 
 }  // namespace lbm

@@ -50,6 +50,7 @@ class FieldWriter {
 
  private:
   void write_xdmf() const;
+  void write_view() const;
   std::string nothing(const char* name, double time) const;
   std::string fluid_grid(std::size_t index) const;
   std::string particle_grid(std::size_t index) const;

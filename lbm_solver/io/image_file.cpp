@@ -19,6 +19,7 @@
 
 #include "lbm_solver/io/hdf5_files.h"
 #include "lbm_solver/io/picture_file.h"
+#include "lbm_solver/io/refusal.h"
 #ifdef BPLBM_HDF5
 #include "protocol/transport/hdf5_file.h"
 #endif
@@ -28,10 +29,6 @@ namespace lbm {
 namespace {
 
 constexpr double kMostVoxels = 2e9;
-
-[[noreturn]] void refuse(const std::string& problem, const std::string& remedy) {
-  throw std::invalid_argument(problem + "; " + remedy);
-}
 
 /// A type of number in a file.
 struct NumberType {

@@ -2,6 +2,7 @@
 #include "lbm_solver/io/scene_reader.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>

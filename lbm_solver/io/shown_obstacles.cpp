@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "lbm_solver/io/hdf5_array.h"
+
 namespace lbm {
 namespace {
 
@@ -144,22 +146,26 @@ std::vector<double> ShownObstacles::places(const Shapes& shapes, double time) co
   return numbers;
 }
 
-std::vector<ShownObstacles::Array> ShownObstacles::arrays(double time, bool first) const {
-  const auto d = static_cast<std::size_t>(box_.dimension);
-  std::vector<Array> all;
+bool ShownObstacles::lie_in(hid_t first_frame) const {
+  const auto has = [&](const char* name) { return H5Lexists(first_frame, name, H5P_DEFAULT) > 0; };
+  return (!any_walls() || has("wall_cells")) && (!any_round() || has("round_radius"));
+}
+
+void ShownObstacles::write(hid_t group, double time, bool first) const {
+  const auto d = static_cast<hsize_t>(box_.dimension);
+  const auto number = [](const auto& list) { return static_cast<hsize_t>(list.size()); };
   if (any_walls() && (first || walls_.move()))
-    all.push_back({"wall_corners", "m", d, places(walls_, time)});
+    write_array(group, "wall_corners", places(walls_, time), {number(walls_.points), d}, "m");
   if (any_walls() && first) {
-    all.push_back({"wall_cells", "1", d, cells_});
-    all.push_back({"wall_obstacle", "1", 1, walls_.obstacle});
+    write_array(group, "wall_cells", cells_, {number(walls_.obstacle), d}, "1");
+    write_array(group, "wall_obstacle", walls_.obstacle, {number(walls_.obstacle)}, "1");
   }
   if (any_round() && (first || round_.move()))
-    all.push_back({"round_places", "m", d, places(round_, time)});
+    write_array(group, "round_places", places(round_, time), {number(round_.points), d}, "m");
   if (any_round() && first) {
-    all.push_back({"round_radius", "m", 1, radii_});
-    all.push_back({"round_obstacle", "1", 1, round_.obstacle});
+    write_array(group, "round_radius", radii_, {number(radii_)}, "m");
+    write_array(group, "round_obstacle", round_.obstacle, {number(radii_)}, "1");
   }
-  return all;
 }
 
 std::string ShownObstacles::walls_grid(double time, const std::string& first,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "lbm_solver/base/motion.h"
@@ -15,7 +15,7 @@ namespace lbm {
 /// surfaces of triangles (`walls`; in two dimensions outlines of lines), and round ones by centre
 /// and radius (`round_obstacles`). A disc that turns has a line that turns with it. Images are
 /// shown by their cells. What stays where it is comes with the first frame alone, and a scene
-/// without obstacles writes nothing.
+/// without obstacles writes nothing. (A group is an id of HDF5, a hid_t.)
 class ShownObstacles {
  public:
   ShownObstacles() = default;  ///< none
@@ -23,14 +23,11 @@ class ShownObstacles {
 
   bool any_walls() const { return !walls_.parts.empty(); }
   bool any_round() const { return !round_.parts.empty(); }
-  /// Numbers of a frame.
-  struct Array {
-    const char *name, *unit;
-    std::size_t columns;
-    std::variant<std::vector<double>, std::vector<int>> numbers;
-  };
-  /// @param first  it is the first frame of its file
-  std::vector<Array> arrays(double time, bool first) const;
+  /// Whether the first frame of a file has what later ones refer to.
+  bool lie_in(std::int64_t first_frame) const;
+
+  /// Into the group of a frame. @param first  it is the first one of its file
+  void write(std::int64_t group, double time, bool first) const;
   /// Grids of a frame for ParaView. @param first, own  names of the first frame and of this one
   std::string walls_grid(double time, const std::string& first, const std::string& own) const;
   std::string round_grid(double time, const std::string& first, const std::string& own) const;

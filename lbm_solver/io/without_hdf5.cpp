@@ -31,6 +31,8 @@ Record read_record(const std::string& path) {
   refuse(path);
 }
 
+ShownObstacles::ShownObstacles(const Scene&) {}
+
 FieldWriter::FieldWriter(const std::string& folder, const Units&, int, double, ShownObstacles) {
   refuse(folder + "/fields.h5");
 }

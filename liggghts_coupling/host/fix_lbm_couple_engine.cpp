@@ -3,14 +3,12 @@
 #include <atom.h>
 #include <comm.h>
 #include <domain.h>
-#include <error.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <integrate.h>
 #include <modify.h>
 #include <neighbor.h>
 #include <update.h>
 
-#include <memory>
 #include <numeric>
 #include <vector>
 
@@ -19,8 +17,7 @@
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
 #include "liggghts_coupling/host/script_checks.h"
-#include "liggghts_coupling/host/solid_hello.h"
-#include "protocol/transport/recording.h"
+#include "liggghts_coupling/host/solid_handshake.h"
 
 namespace dem {
 
@@ -60,7 +57,7 @@ protocol::Setting FixLbmCouple::setting() const {
 /// What the script is set up to do.
 protocol::Hello FixLbmCouple::hello() const {
   const protocol::Hello& fluid = Coupling::instance().session->fluid();
-  protocol::Hello hello = SolidHello(lmp, groupbit, coupling_->substeps(), clumps_).collect();
+  protocol::Hello hello = SolidHandshake(lmp, groupbit, coupling_->substeps(), clumps_).collect();
   if (hello.buoyancy != protocol::Buoyancy::BySolid)
     hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
                                                                 : protocol::Buoyancy::ByFluid;
@@ -138,19 +135,6 @@ void FixLbmCouple::set_up_again() {
   neighbor->build();
   neighbor->ncalls = 0;
   update->integrate->setup_minimal(0);
-}
-
-void FixLbmCouple::begin_recording(const std::string& record) const {
-  Coupling& job = Coupling::instance();
-  const int rank = comm->me;
-  const std::string file = rank == 0 ? record : fmt::format("{}.{}", record, rank);
-  try {
-    const protocol::Bytes handshake = encode(job.session->fluid());  // came before the script
-    protocol::record_to(file, job.channel, "solid", rank, handshake);
-  } catch (const std::exception& e) {
-    error->one(FLERR, e.what());
-  }
-  job.session->use(*job.channel);
 }
 
 }  // namespace dem

@@ -148,7 +148,7 @@ Hello Trace::hello(Role role) const {
       const auto hello = decode<Hello>(frame(row));
       if (hello.role == role) return hello;
     }
-  throw std::runtime_error("the recording ended before both sides had said hello");
+  throw std::runtime_error("the recording ended before the handshake of both sides");
 }
 
 namespace {
@@ -216,7 +216,7 @@ class ReplayChannel final : public Channel {
 
   void send(int remote, Bytes frame, const Wait& wait) override {
     const FrameRow& row = next(sent_[remote], remote, wait);
-    if (row.kind == Kind::Hello || frame == trace_->frame(row)) return;  // hellos hold versions
+    if (row.kind == Kind::Hello || frame == trace_->frame(row)) return;  // handshakes hold versions
     throw ProtocolError(
         format("interval {}: the {} message sent to {} differs from the "
                "recorded one; `trace diff` names the first difference",

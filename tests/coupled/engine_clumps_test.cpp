@@ -167,7 +167,7 @@ TEST_F(ClumpsOfEngines, TumbleAlikeInSpace) {
 
 TEST_F(ClumpsOfEngines, WhatIsNoneIsNamed) {
   const std::pair<std::string, std::string> wrong[] = {{"reference", "0,0,0"},
-                                                       {"reference", "0,0,0,0.001;0,0,0,0.001"},
+                                                       {"reference", "0,0,0,0.001:0,0,0"},
                                                        {"reference", "0,0,0,-1"},
                                                        {"python", "0,0,0,one"},
                                                        {"yade", "0,0,0"}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -12,6 +12,8 @@
 namespace lbm {
 
 namespace {
+
+using Variables = std::vector<protocol::Variable>;
 
 /// A wall, also one that moves along itself, unless an opening takes the whole side.
 protocol::SideWall wall_at(const Scene& s, SideName side) {
@@ -73,35 +75,23 @@ std::string mesh_file(const std::string& folder, std::size_t number) {
 }
 
 /// The walls that the script can build as the fluid has them, and how they move.
-void add_shapes(const Scene& s, const std::string& folder, protocol::Hello& h) {
+Variables shape_variables(const Scene& s, const std::string& folder) {
+  Variables all;
   const auto meshes = meshes_of(s);
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    h.variables.push_back({fmt::format("mesh{}", i + 1), mesh_file(folder, i + 1)});
+    all.push_back({fmt::format("mesh{}", i + 1), mesh_file(folder, i + 1)});
     const auto& motion = meshes[i]->motion;
-    if (motion)
-      h.variables.push_back({fmt::format("mesh{}_motion", i + 1), mesh_motion_words(*motion)});
+    if (motion) all.push_back({fmt::format("mesh{}_motion", i + 1), mesh_motion_words(*motion)});
   }
   const std::vector<std::string> discs = discs_of(s);
   for (std::size_t i = 0; i < discs.size(); ++i)
-    h.variables.push_back({fmt::format("disc{}_wall", i + 1), discs[i]});
+    all.push_back({fmt::format("disc{}_wall", i + 1), discs[i]});
+  return all;
 }
 
-}  // namespace
-
-void write_meshes(const Scene& s, const std::string& folder) {
-  const auto meshes = meshes_of(s);
-  for (std::size_t i = 0; i < meshes.size(); ++i)
-    write_stl(mesh_file(folder, i + 1), *meshes[i]->mesh->surface);
-}
-
-protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start,
-                           const std::optional<Block>& cells) {
+void add_box(const Scene& s, protocol::Hello& h) {
   const Vec3 top = s.box.origin + s.box.size;
   const double half_depth = 0.5 * s.box.depth;
-  protocol::Hello h;
-  h.role = protocol::Role::Fluid;
-  h.program = "lbm";
-  h.program_version = BPLBM_VERSION;
   const bool flat = s.box.dimension == 2;
   h.dimension = s.box.dimension;
   h.box_lo = {s.box.origin.x(), s.box.origin.y(), flat ? -half_depth : s.box.origin.z()};
@@ -109,6 +99,10 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   for (int k = 0; k < 3; ++k) h.periodic[k] = s.box.sides[k] == SideKind::Periodic;
   if (flat) h.periodic[2] = 1;
   h.depth = s.box.depth;
+}
+
+/// What both sides must agree on beside the box.
+void add_agreement(const Scene& s, const Plan& plan, const RunStart& start, protocol::Hello& h) {
   h.gravity = {s.fluid.gravity.x(), s.fluid.gravity.y(), s.fluid.gravity.z()};
   h.buoyancy = s.coupling->buoyancy;
   h.first_interval = start.interval;
@@ -120,6 +114,11 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   const ParticleScene& p = *s.particles;
   h.radius = Range{0.5 * p.diameter.lo, 0.5 * p.diameter.hi};
   h.density = p.density;
+}
+
+/// The cells of this rank, and how far beyond them a particle still matters to it.
+void add_subdomain(const Scene& s, const Plan& plan, const std::optional<Block>& cells,
+                   protocol::Hello& h) {
   h.subdomain_lo = h.box_lo;
   h.subdomain_hi = h.box_hi;
   for (int k = 0; cells && k < s.box.dimension; ++k) {
@@ -127,50 +126,94 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
     if (cells->begin[k] + cells->size[k] < plan.domain.cells()[k])
       h.subdomain_hi[k] = s.box.origin[k] + plan.units.dx * (cells->begin[k] + cells->size[k]);
   }
-  add_walls(s, static_cast<double>(start.interval) * plan.interval(), h);
   h.reach = std::max(2.0, s.coupling->lubrication_range) * plan.units.dx;
+}
 
-  const auto number = [&h](const std::string& name, double value) {
-    h.variables.push_back(
-        {name, fmt::format("{}", value)});  // shortest text that reads back the same
-  };
-  const auto whole = [&h](const std::string& name, std::int64_t value) {
-    h.variables.push_back({name, fmt::format("{}", value)});
-  };
+/// A number as the shortest text that reads back the same.
+protocol::Variable number(const std::string& name, double value) {
+  return {name, fmt::format("{}", value)};
+}
+
+protocol::Variable whole(const std::string& name, std::int64_t value) {
+  return {name, fmt::format("{}", value)};
+}
+
+Variables box_variables(const Scene& s, const protocol::Hello& h) {
+  Variables all;
   const char* axis[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
-    number(fmt::format("{}_lo", axis[k]), h.box_lo[k]);
-    number(fmt::format("{}_hi", axis[k]), h.box_hi[k]);
-    h.variables.push_back({fmt::format("boundary_{}", axis[k]), h.periodic[k] ? "p" : "f"});
-    whole(fmt::format("walls_{}", axis[k]), h.periodic[k] ? 0 : 1);
+    all.push_back(number(fmt::format("{}_lo", axis[k]), h.box_lo[k]));
+    all.push_back(number(fmt::format("{}_hi", axis[k]), h.box_hi[k]));
+    all.push_back({fmt::format("boundary_{}", axis[k]), h.periodic[k] ? "p" : "f"});
+    all.push_back(whole(fmt::format("walls_{}", axis[k]), h.periodic[k] ? 0 : 1));
   }
-  const double g = s.fluid.gravity.norm();
-  whole("dimension", s.box.dimension);
-  number("depth", s.box.depth);
-  number("gravity", g);
-  number("gravity_x", g > 0.0 ? s.fluid.gravity.x() / g : 0.0);
-  number("gravity_y", g > 0.0 ? s.fluid.gravity.y() / g : flat ? -1.0 : 0.0);
-  number("gravity_z", g > 0.0 ? s.fluid.gravity.z() / g : flat ? 0.0 : -1.0);
-  number("solid_step", plan.interval() / plan.substeps);
-  whole("substeps", plan.substeps);
-  whole("solid_steps_total", (plan.intervals - start.interval) * plan.substeps);
-  whole("restart", start.interval > 0 ? 1 : 0);
-  h.variables.push_back({"out_folder", start.out});
-  h.variables.push_back({"checkpoint", start.checkpoint});
-  h.variables.push_back({"restart_file", start.solid_part});
-  number("coupling_timeout", s.coupling->timeout);
-  number("diameter_min", p.diameter.lo);
-  number("diameter_max", p.diameter.hi);
-  number("density_min", p.density.lo);
-  number("density_max", p.density.hi);
+  all.push_back(whole("dimension", s.box.dimension));
+  all.push_back(number("depth", s.box.depth));
+  return all;
+}
+
+/// Gravity as its strength and its direction, which is downwards where there is none.
+Variables gravity_variables(const Scene& s) {
+  const Vec3& gravity = s.fluid.gravity;
+  const double g = gravity.norm();
+  const bool flat = s.box.dimension == 2;
+  const Vec3 down = g > 0.0 ? Vec3(gravity / g) : Vec3(0.0, flat ? -1.0 : 0.0, flat ? 0.0 : -1.0);
+  return {number("gravity", g), number("gravity_x", down.x()), number("gravity_y", down.y()),
+          number("gravity_z", down.z())};
+}
+
+Variables run_variables(const Scene& s, const Plan& plan, const RunStart& start) {
+  return {number("solid_step", plan.interval() / plan.substeps),
+          whole("substeps", plan.substeps),
+          whole("solid_steps_total", (plan.intervals - start.interval) * plan.substeps),
+          whole("restart", start.interval > 0 ? 1 : 0),
+          {"out_folder", start.out},
+          {"checkpoint", start.checkpoint},
+          {"restart_file", start.solid_part},
+          number("coupling_timeout", s.coupling->timeout)};
+}
+
+Variables particle_variables(const ParticleScene& p, int dimension) {
+  Variables all{number("diameter_min", p.diameter.lo), number("diameter_max", p.diameter.hi),
+                number("density_min", p.density.lo), number("density_max", p.density.hi)};
   for (std::size_t i = 0; i < p.start.size(); ++i) {
-    number(fmt::format("particle{}_x", i + 1), p.start[i].x());
-    number(fmt::format("particle{}_y", i + 1), p.start[i].y());
-    if (!flat) number(fmt::format("particle{}_z", i + 1), p.start[i].z());
+    all.push_back(number(fmt::format("particle{}_x", i + 1), p.start[i].x()));
+    all.push_back(number(fmt::format("particle{}_y", i + 1), p.start[i].y()));
+    if (dimension == 3) all.push_back(number(fmt::format("particle{}_z", i + 1), p.start[i].z()));
   }
-  add_shapes(s, start.out, h);
-  if (p.contact_stiffness) number("contact_stiffness", *p.contact_stiffness);
-  for (const auto& [name, value] : p.variables) h.variables.push_back({name, value});
+  return all;
+}
+
+void append(Variables& all, const Variables& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+void write_meshes(const Scene& s, const std::string& folder) {
+  const auto meshes = meshes_of(s);
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    write_stl(mesh_file(folder, i + 1), *meshes[i]->mesh->surface);
+}
+
+protocol::Hello make_handshake(const Scene& s, const Plan& plan, const RunStart& start,
+                               const std::optional<Block>& cells) {
+  protocol::Hello h;
+  h.role = protocol::Role::Fluid;
+  h.program = "lbm";
+  h.program_version = BPLBM_VERSION;
+  add_box(s, h);
+  add_agreement(s, plan, start, h);
+  add_subdomain(s, plan, cells, h);
+  add_walls(s, static_cast<double>(start.interval) * plan.interval(), h);
+  h.variables = box_variables(s, h);
+  append(h.variables, gravity_variables(s));
+  append(h.variables, run_variables(s, plan, start));
+  append(h.variables, particle_variables(*s.particles, s.box.dimension));
+  append(h.variables, shape_variables(s, start.out));
+  if (s.particles->contact_stiffness)
+    h.variables.push_back(number("contact_stiffness", *s.particles->contact_stiffness));
+  for (const auto& [name, value] : s.particles->variables) h.variables.push_back({name, value});
   return h;
 }
 

@@ -26,7 +26,7 @@ void write_meshes(const Scene& scene, const std::string& folder);
 /// What the fluid says to the solid: everything of the plan that both must agree on, and the
 /// variables that its script may use instead of numbers of its own.
 /// @param cells  of this rank, where several share the box
-protocol::Hello make_hello(const Scene& scene, const Plan& plan, const RunStart& start = {},
-                           const std::optional<Block>& cells = {});
+protocol::Hello make_handshake(const Scene& scene, const Plan& plan, const RunStart& start = {},
+                               const std::optional<Block>& cells = {});
 
 }  // namespace lbm
