@@ -94,6 +94,16 @@ void write_meshes(const Scene& s, const std::string& folder) {
     write_stl(mesh_file(folder, i + 1), *meshes[i]->mesh->surface);
 }
 
+void set_subdomain(const Units& units, const Domain& domain, const Block& cells,
+                   protocol::Hello& hello) {
+  for (int k = 0; k < domain.dimension(); ++k) {
+    const int end = cells.begin[k] + cells.size[k];
+    hello.subdomain_lo[k] = units.origin[k] + units.dx * cells.begin[k];
+    hello.subdomain_hi[k] =
+        end < domain.cells()[k] ? units.origin[k] + units.dx * end : hello.box_hi[k];
+  }
+}
+
 protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& start,
                            const std::optional<Block>& cells) {
   const Vec3 top = s.box.origin + s.box.size;
@@ -122,11 +132,7 @@ protocol::Hello make_hello(const Scene& s, const Plan& plan, const RunStart& sta
   h.density = p.density;
   h.subdomain_lo = h.box_lo;
   h.subdomain_hi = h.box_hi;
-  for (int k = 0; cells && k < s.box.dimension; ++k) {
-    h.subdomain_lo[k] = s.box.origin[k] + plan.units.dx * cells->begin[k];
-    if (cells->begin[k] + cells->size[k] < plan.domain.cells()[k])
-      h.subdomain_hi[k] = s.box.origin[k] + plan.units.dx * (cells->begin[k] + cells->size[k]);
-  }
+  if (cells) set_subdomain(plan.units, plan.domain, *cells, h);
   add_walls(s, static_cast<double>(start.interval) * plan.interval(), h);
   h.reach = std::max(2.0, s.coupling->lubrication_range) * plan.units.dx;
 
