@@ -141,13 +141,16 @@ std::string diagnosis(const Scene& s, const Plan& plan, const std::optional<Vec3
                   : "take more cells, or numerics.collision = \"central_moment\", which is stable "
                     "at larger Re_h";
   } else {
+    const bool thrown = near.particle && !at;
     if (!driven.empty())
       text += fmt::format(" What drives most is {}, good for {:.3g} m/s.", driven.front().what,
                           driven.front().speed);
     cure = fmt::format(
-        "if this flow is right, set fluid.velocity_scale to its largest speed (now "
-        "{:.3g} m/s); else look at what drives it",
-        s.fluid.velocity_scale);
+        "if this {} is right, set fluid.velocity_scale to its largest speed (now {:.3g} m/s); else "
+        "look at {}",
+        thrown ? "motion" : "flow", s.fluid.velocity_scale,
+        thrown ? "the velocity that the particle was given, and at its contacts"
+               : "what drives it");
   }
   return text + " What to do: " + cure;
 }

@@ -30,25 +30,25 @@ HeldFlow::HeldFlow(const Scene& scene, const Plan& plan, const Decomposition& ra
 }
 
 void HeldFlow::write(double time, const Fluid& fluid) {
-  double wanted = 0.0;
   if (by_force_) {
     const FlowControl& control = *fluid.flow_control();
     flow_ = mean_velocity(fluid, control.axis()) * to_flow_;
-    wanted = control.wanted(fluid.steps()) * to_flow_;
+    wanted_ = control.wanted(fluid.steps()) * to_flow_;
     drive_ = control.force() * units_.dx / (units_.dt * units_.dt) * units_.density;
   } else {
     const PressureControl& control = *fluid.pressure_control();
     flow_ = control.flow() * to_flow_;
-    wanted = control.wanted(fluid.steps()) * to_flow_;
+    wanted_ = control.wanted(fluid.steps()) * to_flow_;
     drive_ = control.drho() * units_.pressure();
   }
   if (!table_) return;
-  table_->row({time, flow_, wanted, drive_});
+  table_->row({time, flow_, wanted_, drive_});
   table_->flush();
 }
 
 void HeldFlow::describe(std::map<std::string, double>& parameters) const {
   parameters["flow"] = flow_;
+  parameters["wanted_flow"] = wanted_;
   parameters[by_force_ ? "pressure_gradient" : "held_pressure"] = drive_;
 }
 

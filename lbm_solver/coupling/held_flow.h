@@ -29,7 +29,7 @@ class HeldFlow {
   const bool by_force_;
   double to_flow_;                  // unit of the flow that is measured [m³/s]
   std::optional<CsvWriter> table_;  // of rank 0
-  double flow_ = 0.0, drive_ = 0.0;
+  double flow_ = 0.0, wanted_ = 0.0, drive_ = 0.0;
 };
 
 }  // namespace lbm

@@ -250,6 +250,24 @@ std::string describe_cost(const Scene& s, const Plan& p) {
       s.coupling ? "; the solid's time comes on top" : "");
 }
 
+namespace {
+
+/// Where a flow that was to be held has not been found.
+std::string say_missed_flow(const Summary& s) {
+  constexpr double close = 0.05;
+  const auto flow = s.parameters.find("flow"), wanted = s.parameters.find("wanted_flow");
+  if (flow == s.parameters.end() ||
+      std::abs(flow->second - wanted->second) <= close * std::abs(wanted->second))
+    return "";
+  return fmt::format(
+      "\nhint         the flow at the end is {:.3g} m³/s, wanted is {:.3g}: flow.csv shows whether "
+      "it "
+      "is still on its way (run.end_time) or something blocks it",
+      flow->second, wanted->second);
+}
+
+}  // namespace
+
 std::string describe(const Summary& s) {
   std::string solid = s.solid ? describe(*s.solid) : std::string();
   if (!solid.empty()) solid = "solid        " + solid + "\n";
@@ -262,6 +280,7 @@ std::string describe(const Summary& s) {
       s.mass_drift, solid);
   for (const auto& [part, share] : s.time_share)
     out += fmt::format("{} {:.0f} %  ", part, 100.0 * share);
+  out += say_missed_flow(s);
   if (!s.time_share.contains("waiting") || s.wall_seconds < 1.0) return out;
   const double waits = s.time_share.at("waiting");
   if (waits > 0.2)

@@ -37,6 +37,8 @@ const std::map<std::string, std::string> kUnits{
     {"share_at_rest_bound", "1"},
     {"share_at_shear_bound", "1"},
     {"flow", "m³/s"},
+    {"wanted_flow", "m³/s"},
+    {"held_pressure", "Pa"},
     {"pressure_gradient", "Pa/m"},
     {"gravity_x", "m/s²"},
     {"gravity_y", "m/s²"},
@@ -99,7 +101,9 @@ std::string describe(const protocol::SolidReport& report) {
 }
 
 std::string unit_of(const std::string& name) {
-  return kUnits.at(name);
+  const auto unit = kUnits.find(name);
+  if (unit == kUnits.end()) throw std::out_of_range("no unit is known of '" + name + "'");
+  return unit->second;
 }
 
 void write_summary(const std::string& folder, const Summary& s) {
@@ -137,7 +141,9 @@ void write_summary(const std::string& folder, const Summary& s) {
   {
     std::ofstream out(part);
     out << json.dump(2) << '\n';
-    if (!out.flush()) throw InputError(path, "cannot be written", "is the disk full?");
+    if (!out.flush())
+      throw InputError(path, "cannot be written",
+                       "is the disk full, or has its folder been moved?");
   }
   if (std::rename(part.c_str(), path.c_str()) != 0)
     throw InputError(path, "cannot be replaced", "is the folder writable?");

@@ -37,6 +37,11 @@ bool is_something_else(const std::string& path) {
 Handle open_file(const std::string& path, Open mode) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // our exceptions speak instead of its stack dump
   const bool creates = mode == Open::Create || mode == Open::CreateForReaders;
+  if (const auto folder = std::filesystem::path(path).parent_path();
+      mode == Open::Append && !folder.empty() && !std::filesystem::exists(folder))
+    throw std::runtime_error("cannot open " + path +
+                             ": its folder has been moved or deleted; leave it where it is until "
+                             "the run has ended");
   if (const std::string problem = why_unreadable(path);
       !problem.empty() && (!creates || std::filesystem::exists(path)))
     throw std::runtime_error("cannot open " + path + ": " + problem + "; give another path");

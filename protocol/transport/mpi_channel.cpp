@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "protocol/transport/mpi_channel.h"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -11,6 +9,7 @@
 
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
+#include "protocol/transport/polling.h"
 #include "protocol/wire/numbers.h"
 #include "protocol/wire/text.h"
 
@@ -25,28 +24,6 @@ constexpr int kPatienceTag = 7005;
 constexpr auto kOnItsWay = std::chrono::seconds(1);
 
 using Clock = std::chrono::steady_clock;
-
-/// Polls until `ready` or until the time is over. A short busy wait keeps the latency of a ready
-/// partner; afterwards the core is offered to others at every turn, because the partner may need
-/// it. (MPI may offer it at every turn as well: a few of them can take as long as a time-out.)
-template <class Ready>
-bool poll(double seconds, Ready&& ready) {
-  constexpr int busy_turns = 2000, turns_a_look = 50;
-  const Waiting here("an exchange");
-  std::chrono::time_point<Clock, std::chrono::duration<double>> end;  // most waits end before it
-  for (int turn = 1; turn <= busy_turns; ++turn) {
-    if (ready()) return true;
-    if (turn % turns_a_look != 0) continue;
-    const auto now = Clock::now();
-    if (turn == turns_a_look) end = now + std::chrono::duration<double>(seconds);
-    if (now >= end) return ready();
-  }
-  while (Clock::now() < end) {
-    if (ready()) return true;
-    sched_yield();
-  }
-  return ready();
-}
 
 class MpiChannel final : public Channel {
  public:

@@ -189,6 +189,11 @@ void ArrivalCheck::examine(const Particle& now, const State* before, std::int64_
   expect_finite(s.id, s.x, "position", interval);
   expect_finite(s.id, s.v, "velocity", interval);
   expect_finite(s.id, s.omega, "angular velocity", interval);
+  if (!in_plane(s, shape))
+    refuse(
+        "particle {} leaves the plane at interval {}: velocity {} m/s, angular velocity {} rad/s; "
+        "in two dimensions v_z, ω_x and ω_y are 0 (LIGGGHTS: fix enforce2d)",
+        s.id, interval, text(s.v), text(s.omega));
   if (is_part(shape)) return;  // its place is held against its carrier's
   if (!inside(now)) {
     double out = 0.0;

@@ -3,6 +3,7 @@
 /// scene when it arrives, whichever program it is.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <span>
 #include <utility>
@@ -43,7 +44,7 @@ class ArrivalCheck {
       good = good & (s.x[k] + shape.radius >= lo_[k]) & (s.x[k] - shape.radius <= hi_[k]);
     }
     const double sum = s.v[0] + s.v[1] + s.v[2] + s.omega[0] + s.omega[1] + s.omega[2];
-    good = good & (squares <= diameter * diameter) & (sum - sum == 0.0);
+    good = good & (squares <= diameter * diameter) & (sum - sum == 0.0) & in_plane(s, shape);
     if (!good) examine({s, shape}, &before, interval);
   }
 
@@ -60,11 +61,19 @@ class ArrivalCheck {
   bool inside(const Particle& now) const;
   double fastest(const State& now, const State& before) const;
   bool near(const Particle& now, const State& before) const;
+  /// Always in three dimensions; in two, but for round-off in an interval.
+  bool in_plane(const State& s, const Shape& shape) const {
+    const double turns = std::abs(s.omega[0]) + std::abs(s.omega[1]);
+    const double way = (std::abs(s.v[2]) + turns * shape.radius) * interval_;
+    return (1.0 - counts_[2]) * way <= kOutOfPlane * shape.radius;
+  }
   double moved(const State& now, const State& before, unsigned axis) const;
   void examine(const Particle& now, const State* before, std::int64_t interval) const;
   double agreed_volume(double radius) const;
   void sizes(const Shape& shape, std::int64_t interval) const;
   void inertia(const Shape& shape, double volume, std::int64_t interval) const;
+
+  static constexpr double kOutOfPlane = 1e-6;  // of a radius, an interval
 
   Hello fluid_;
   double interval_;    ///< [s]

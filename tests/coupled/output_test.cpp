@@ -74,6 +74,28 @@ TEST_F(OutputTest, AnEarlierRunIsKeptUnlessItIsToBeReplaced) {
   EXPECT_TRUE(fs::exists(path("out/thesis.txt")));
 }
 
+TEST_F(OutputTest, AFlowThatIsNotFoundIsSaid) {
+  const std::string ends = R"(
+[[boundary]]
+side = "left"
+kind = "pressure"
+flow_rate = 1e-4
+[[boundary]]
+side = "right"
+kind = "pressure"
+)";
+  std::string open = test::replaced(kScene, "sides_x = \"periodic\"\n", "") + ends;
+  open = test::replaced(open, "body_force = [0.001, 0.0]\n", "");
+  folder_.write("open.toml", open);
+  const JobResult found = run("open.toml --out open");
+  expect_ok(found);
+  EXPECT_EQ(found.output.find("wanted is"), std::string::npos) << found.output;
+  EXPECT_NE(test::read_file(path("open/summary.json")).find("held_pressure"), std::string::npos);
+  folder_.write("blocked.toml", open + "[[obstacle]]\nfrom = [0.04, 0.0]\nto = [0.06, 0.1]\n");
+  expect_end(run("blocked.toml --out blocked"), 0,
+             {"hint         the flow at the end is", "wanted is 0.0001", "something blocks it"});
+}
+
 TEST_F(OutputTest, AFolderOfSomebodyElseIsRefused) {
   expect_end(run("--out ."), 2, {"lbm | error | .: is not empty, and no folder of an earlier run"});
   EXPECT_FALSE(fs::exists(path("lbm.log")));

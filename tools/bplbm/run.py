@@ -143,6 +143,18 @@ def add_solid_waiting(out):
     path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
     print(f"run | waiting: the fluid {summary['waiting']:.3g} s for the solid, the solid {summary['solid_waiting']:.3g} s for "
           f"the fluid, of {summary['wall_seconds']:.3g} s")
+    if hint := hint_of_waiting(summary["waiting"], summary["solid_waiting"], summary["wall_seconds"]):
+        print(f"run | hint | {hint}")
+
+
+def hint_of_waiting(fluid, solid, wall):
+    """What a job suffered in which both programs waited at the same time. In turns they wait for `wall` seconds in sum;
+    what is above that nobody computed in. Returns a sentence, or None where that is less than a third, or 2 s."""
+    idle = fluid + solid - wall
+    if idle < max(wall / 3, 2.0):
+        return None
+    return (f"for {idle / wall:.0%} of the time each program waited for the other one: other work has their cores (load "
+            f"{os.getloadavg()[0]:.1f} on {os.cpu_count()} cores); the same job takes a part of that on free ones")
 
 
 def add_warnings(out):
@@ -288,13 +300,17 @@ def main():
     try:
         return go(args, others, out)
     finally:
-        if hold:  # what has come besides lbm's own, as pictures: a later run may replace it
+        if hold and out.is_dir():  # what has come besides lbm's own, as pictures: a later run may replace it
             output_folder.add_files(out, output_folder.files(out) - before)
 
 
 def go(args, others, out):
     """The job, its comparison runs, pictures and results. Returns the exit code."""
     code = run_job(args, out) or study(args, others, out)
+    if not out.is_dir():
+        print(f"run | error | {out} has been moved or deleted; leave an output folder where it is until its run has ended, and "
+              "then make this run again", file=sys.stderr)
+        return code or FAULT
     if code:
         print(f"run | stopped with exit code {code}; logs in {out}", file=sys.stderr)
         if code in (1, 3) and (out / "checkpoint.h5").exists():

@@ -18,6 +18,8 @@ FRAME_TAG, URGENT_TAG, ROLE_TAG, LEADER_TAG, PATIENCE_TAG = 7001, 7002, 7003, 70
 ON_ITS_WAY = 1.0   # a frame that was sent before a farewell [s]
 GRACE = 0.6        # after a signal, in which the fluid may still answer [s]
 BUSY_TURNS = 200   # of a wait, before the core is offered to others
+CROWD = 1e-3       # a wait that lacks so much time shares its core with others, and sleeps [s]
+NAP = 2e-5         # between two looks of a wait that sleeps [s]
 
 
 class Signals:
@@ -199,11 +201,16 @@ class Channel:
 
     @staticmethod
     def _poll(seconds: float, ready: Callable[[], bool]) -> bool:
-        end, turn = time.monotonic() + seconds, 0
+        begin, computed, turn, crowded = time.monotonic(), time.thread_time(), 0, False
         while not ready():
             turn += 1
             if turn > BUSY_TURNS:
-                if time.monotonic() > end:
+                waited = time.monotonic() - begin
+                if waited > seconds:
                     return ready()
-                os.sched_yield()
+                crowded = crowded or waited - (time.thread_time() - computed) > CROWD
+                if crowded:
+                    time.sleep(NAP)
+                else:
+                    os.sched_yield()
         return True

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -115,6 +116,22 @@ TEST(FieldWriter, ShowsFluidAndParticlesInOnePlace) {
        {"id", "type", "radius", "velocity", "angular_velocity", "force", "torque"})
     EXPECT_NE(text.find(std::string("<Attribute Name=\"") + value + "\""), std::string::npos)
         << value;
+}
+
+TEST(FieldWriter, SaysThatItsFolderIsGone) {
+  const test::TemporaryFolder folder;
+  FieldWriter writer(folder.path(), {0.01, 0.1, 1000.0, 1.0, {0.0, 0.0, 0.0}});
+  writer.write(small_frame(2), small_box(2));
+  std::filesystem::rename(folder.path(), folder.path() + "-elsewhere");
+  try {
+    writer.write(small_frame(2), small_box(2));
+    ADD_FAILURE() << "nothing was said";
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("its folder has been moved or deleted"),
+              std::string::npos)
+        << error.what();
+  }
+  std::filesystem::rename(folder.path() + "-elsewhere", folder.path());
 }
 
 TEST(Summary, NamesTheUnitOfEveryNumber) {

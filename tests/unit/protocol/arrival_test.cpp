@@ -141,6 +141,12 @@ std::vector<Change> later_changes() {
        [](StateBatch& b) { b.states[0].omega[2] = INFINITY; },
        {"particle 5: angular velocity", "interval 1: not finite"},
        kNumerics},
+      {"out_of_the_plane",
+       [](StateBatch& b) { b.states[0].v[2] = 0.1; },
+       {"particle 5 leaves the plane at interval 1: velocity (0, 0, 0.1) m/s", "enforce2d"}},
+      {"turns_out_of_the_plane",
+       [](StateBatch& b) { b.states[0].omega[1] = -3.0; },
+       {"particle 5 leaves the plane", "angular velocity (0, -3, 0)"}},
       {"twice_as_large",
        [](StateBatch& b) {
          b.shapes = {{5, 1.5 * kRadius, 2.25 * kMass, 4 * kInertia, 1}};

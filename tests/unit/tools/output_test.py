@@ -144,6 +144,17 @@ class Command(InFolder):
                       "broken               (no README.md)"):
             self.assertIn(words, text)
 
+    def test_a_folder_that_vanishes_during_the_run(self):
+        def vanish(_args, out):
+            out.rename(self.folder / "elsewhere")
+            return 1
+
+        with mock.patch.object(run, "run_job", vanish), mock.patch.object(run, "check_programs"):
+            code, text = self.main("settling_disc", "--out", str(self.out), "--no-study")
+        self.assertEqual(code, 1)
+        self.assertIn(f"run | error | {self.out} has been moved or deleted", text)
+        self.assertNotIn("Traceback", text)
+
     def test_a_run_that_its_plot_script_cannot_draw(self):
         (self.folder / "scene").mkdir()
         (self.folder / "scene" / "plot.py").write_text("[][0]\n")

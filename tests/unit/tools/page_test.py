@@ -160,6 +160,11 @@ class Page(Output):
         (self.out / "own.png").write_bytes(picture.png(np.zeros((2, 2), np.uint8), np.zeros((256, 3), np.uint8)))
         self.assertRegex(self.page(), r'<img src="data:image/png;base64,[^"]*" alt="own.png">')
 
+    def test_both_waiting_at_once_is_said(self):
+        self.assertIsNone(launcher.hint_of_waiting(0.5, 9.6, 10.0))  # in turns
+        self.assertIsNone(launcher.hint_of_waiting(0.9, 0.9, 1.0))  # too short to matter
+        self.assertIn("for 90% of the time each program waited", launcher.hint_of_waiting(9.4, 9.6, 10.0))
+
     def test_is_cheap(self):
         self.write(2, frames=100)
         start = time.process_time()
