@@ -5,6 +5,7 @@ alike; what counts is the ratio of neighbours. Discs or spheres of ten cells on 
 but for its floor and lid, ten substeps of LIGGGHTS an interval.
 """
 
+import itertools
 import json
 import os
 import pathlib
@@ -53,18 +54,22 @@ probe_every = {end}
 """
 
 
+def counts_of(dimension, cells, fraction):
+    """Bodies along each axis that together come nearest to the fraction."""
+    wanted = fraction * cells ** dimension / (FULL[dimension] * CELLS_A_DIAMETER ** dimension)
+    most, low = int(cells / (1.01 * CELLS_A_DIAMETER)), int(wanted ** (1 / dimension))
+    choices = itertools.product([max(1, min(most, low + more)) for more in (0, 1)], repeat=dimension)
+    return min(choices, key=lambda counts: abs(np.prod(counts) - wanted))
+
+
 def centres(dimension, cells, fraction):
-    """Of so many bodies of ten cells on a square or cubic lattice that they fill a part of the box; shifted from layer to
-    layer, so that no two lie alike in their cells [m]."""
-    if fraction == 0.0:
-        fraction = 1e-9  # one body: a coupled run needs one
-    pitch = CELLS_A_DIAMETER * (FULL[dimension] / fraction) ** (1.0 / dimension)
-    count = max(1, int(cells / pitch))
-    axis = (np.arange(count) + 0.5) * cells / count
-    grid = np.stack(np.meshgrid(*[axis] * dimension, indexing="ij"), axis=-1).reshape(-1, dimension)
-    room = 0.5 * (cells / count - CELLS_A_DIAMETER) * 0.9 if count > 1 else 0.0
-    shift = np.modf(grid.sum(axis=1) * 0.618)[0] - 0.5
-    return CELL * (grid + max(0.0, min(1.0, room)) * shift[:, None])
+    """Of bodies of ten cells on a lattice that fill a part of the box, one where that is none; shifted from layer to layer, so
+    that no two lie alike in their cells [m]."""
+    counts = counts_of(dimension, cells, fraction)
+    grid = np.stack(np.meshgrid(*[(np.arange(n) + 0.5) * cells / n for n in counts], indexing="ij"), axis=-1)
+    grid = grid.reshape(-1, dimension)
+    room = min(1.0, *(0.4 * (cells / n - CELLS_A_DIAMETER) for n in counts))
+    return CELL * (grid + room * (np.modf(grid.sum(axis=1) * 0.618)[0] - 0.5)[:, None])
 
 
 def write_case(folder, dimension, cells, fraction, steps):
