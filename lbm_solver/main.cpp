@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 /// `lbm scene.toml` runs the fluid of a coupled job; `lbm check scene.toml` looks without running.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <omp.h>
 #include <unistd.h>
 
@@ -11,9 +11,10 @@
 #include <optional>
 
 #include "lbm_solver/base/errors.h"
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/coupling/run.h"
+#include "lbm_solver/io/hdf5_files.h"
 #include "lbm_solver/io/output_folder.h"
 #include "lbm_solver/io/scene_keys.h"
 #include "lbm_solver/io/scene_reader.h"
@@ -23,7 +24,7 @@
 #include "protocol/program/program.h"
 #include "protocol/program/watch.h"
 #include "protocol/transport/mpi_channel.h"
-#include "protocol/transport/trace.h"
+#include "protocol/transport/recording.h"
 #include "protocol/wire/numbers.h"
 
 namespace {
@@ -110,7 +111,7 @@ int check(const Options& o) {
   }
   if (!scene.coupling) throw InputError(scene.file, "has no [coupling]", "there are no variables");
   std::string line;
-  for (const auto& v : make_hello(scene, plan).variables)
+  for (const auto& v : make_handshake(scene, plan).variables)
     line += fmt::format("{}-var {} {}", line.empty() ? "" : " ", v.name, v.value);
   fmt::print("{}\n", line);
   return protocol::kOk;
@@ -204,6 +205,26 @@ double connect_timeout(const std::optional<Scene>& scene) {
   return scene && scene->coupling ? scene->coupling->connect_timeout : -1.0;
 }
 
+/// Options whose files lbm may have been built without. @throws InputError
+void check_files(const Options& o) {
+  if (has_hdf5()) return;
+  if (!o.record.empty()) throw InputError("--record", kNeedsHdf5, kWithoutHdf5);
+  if (!o.run.restart.from.empty()) throw InputError("--restart", kNeedsHdf5, kWithoutHdf5);
+}
+
+/// @throws InputError  a solid program is missing, or there is one too many
+void check_partner(const Options& o, const Scene& scene, bool has_partner) {
+  if (scene.coupling && !has_partner)
+    throw InputError(
+        "mpirun", "no solid program was started beside lbm",
+        "start: mpirun -np 1 lbm scene.toml : -np 1 liggghts -in in.liggghts, or tools/run");
+  if (!scene.coupling && has_partner)
+    throw InputError(scene.file, "has no [coupling], but a solid program was started",
+                     "start lbm alone, or add the tables [coupling] and [particles]");
+  if (!o.record.empty() && !has_partner)
+    throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
+}
+
 /// @param channel  set as soon as there is a partner, so that an error can be told to it
 void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol::World& world) {
   std::exception_ptr mistake;  // in the scene: said when there is a partner who can hear it
@@ -216,6 +237,7 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   world = protocol::connect(protocol::Role::Fluid, connect_timeout(read));
   if (world.coupled()) channel = protocol::make_mpi_channel(world, protocol::Role::Fluid);
   if (o.threads == 0) check_environment();
+  check_files(o);
   if (mistake) std::rethrow_exception(mistake);
   const Scene& scene = *read;
   protocol::limit_waits(scene.coupling
@@ -226,23 +248,12 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   const Plan plan = make_plan(scene, restart ? std::optional(restart->step) : std::nullopt);
   if (restart) check_same_scene(*restart, scene, plan, o.run.restart);
   const Decomposition blocks = divide(o, scene, plan, world.local);
-  if (scene.coupling && !channel)
-    throw InputError(
-        "mpirun", "no solid program was started beside lbm",
-        "start: mpirun -np 1 lbm scene.toml : -np 1 liggghts -in in.liggghts, or tools/run");
-  if (!scene.coupling && channel)
-    throw InputError(scene.file, "has no [coupling], but a solid program was started",
-                     "start lbm alone, or add the tables [coupling] and [particles]");
-  if (!o.record.empty() && !channel)
-    throw InputError("--record", "has nothing to record: the fluid is alone", "leave it out");
+  check_partner(o, scene, channel != nullptr);
   const auto work = known_work(scene, plan, blocks, restart);
   const Decomposition ranks = work ? of_equal_work(blocks, *work) : blocks;
   const std::unique_ptr<OutputFolder> folder = take_folder(o, scene, ranks);
   if (!o.record.empty())
-    channel = protocol::make_recording_channel(
-        std::move(channel),
-        std::make_unique<protocol::TraceWriter>(trace_of(o.record, ranks), "fluid", ranks.rank(),
-                                                world.partner_ranks));
+    protocol::record_to(trace_of(o.record, ranks), channel, "fluid", ranks.rank());
   set_threads(o.threads);
   Log log = ranks.rank() == 0 ? Log(o.run.out, progress_style(o.progress)) : Log();
   if (folder && !folder->set_aside().empty())

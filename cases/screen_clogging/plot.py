@@ -32,22 +32,22 @@ def main():
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.6, 3.6), width_ratios=(1, 1.4))
     image = draw_slice(left, run, min(run.frames(), key=lambda f: abs(f[0] - 0.1))[1], "y", length_unit=1e-3)
     figure.colorbar(image, ax=left, label="speed [m/s]")
-    right.plot(times, through, label="slot of 3 grains")
+    right.plot(times, 100 * through / count, label="spheres, slot of 3 grains")
     if "variant-narrow" in others:
         narrow = others["variant-narrow"]
         held, held_times, held_through = passed(narrow)
         results.append(result("grains through the narrow slot", held_through[-1] / held, "1", 0.0,
                               "a slot of 0.8 grains", 0, scale=1.0))
         told.append(quantity("flux with the slot clogged", narrow.flux(narrow.frames()[-1][1])[2], "m/s"))
-        right.plot(held_times, held_through, label="slot of 0.8 grains")
+        right.plot(held_times, 100 * held_through / held, label="spheres, slot of 0.8 grains")
     if "variant-clumps" in others:
         count, times, through = passed(others["variant-clumps"])
         results.append(result("clumps through the wide slot", through[-1] / count, "1", 1.0,
                               "it is twice as wide as a clump is long", 0.2))
         told.append(quantity("clumps", count, "1"))
-        right.plot(times, through, label="clumps of two, slot of 3")
+        right.plot(times, 100 * through / count, label="clumps of two, slot of 3 grains")
     run.write_results(results, told)
-    right.set(xlabel="time [s]", ylabel="grains through the slot")
+    right.set(xlabel="time [s]", ylabel="grains through the slot [%]")
     right.legend()
     figure.tight_layout()
     run.save(figure, "screen.png")

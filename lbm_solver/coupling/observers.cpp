@@ -55,6 +55,32 @@ std::string solid_text(const Particles* particles) {
   return text.empty() ? text : ", " + text;
 }
 
+/// Numbers of a scene and its plan, for the summary.
+std::map<std::string, double> scene_parameters(const Scene& scene, const Plan& plan) {
+  std::map<std::string, double> parameters{{"cell", plan.units.dx},
+                                           {"time_step", plan.units.dt},
+                                           {"interval", plan.interval()},
+                                           {"tau", plan.kernel.parameters.tau},
+                                           {"density", scene.fluid.density},
+                                           {"kinematic_viscosity", scene.fluid.viscosity},
+                                           {"gravity_x", scene.fluid.gravity.x()},
+                                           {"gravity_y", scene.fluid.gravity.y()},
+                                           {"depth", scene.box.depth},
+                                           {"box_x", scene.box.size.x()},
+                                           {"box_y", scene.box.size.y()},
+                                           {"velocity_scale", scene.fluid.velocity_scale}};
+  if (scene.box.dimension == 3) {
+    parameters["box_z"] = scene.box.size.z();
+    parameters["gravity_z"] = scene.fluid.gravity.z();
+  }
+  if (scene.particles) {
+    parameters["diameter"] = scene.particles->diameter.hi;
+    parameters["particle_density"] = scene.particles->density.hi;
+    parameters["cells_per_diameter"] = plan.cells_per_diameter;
+  }
+  return parameters;
+}
+
 }  // namespace
 
 Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
@@ -72,8 +98,10 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
       last_progress_(start_) {
   const double keep = time_of(first) - 0.5 * plan.interval();  // lines before this time
   intervals_done_ = first;
-  if (scene.output.fields_every > 0.0)
+  if (scene.output.fields_every > 0.0) {
     field_times_.emplace(scene.output.fields_every, plan.interval());
+    images_ = image_solids(scene, plan);
+  }
   const bool flat = scene.box.dimension == 2;
   if (!scene.obstacles.empty()) obstacles_.emplace(scene, plan, ranks, folder, keep);
   if (HeldFlow::wanted_by(scene)) flow_.emplace(scene, plan, ranks, folder, keep);
@@ -87,7 +115,8 @@ Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& 
                     flat ? "time [s],x [m],y [m],pressure [Pa],ux [m/s],uy [m/s]"
                          : "time [s],x [m],y [m],z [m],pressure [Pa],ux [m/s],uy [m/s],uz [m/s]",
                     keep);
-  if (field_times_) fields_.emplace(folder, plan.units, scene.box.dimension, keep);
+  if (field_times_)
+    fields_.emplace(folder, plan.units, scene.box.dimension, keep, ShownObstacles(scene));
 }
 
 std::int64_t Observers::next_look(std::int64_t state) const {
@@ -307,12 +336,14 @@ void Observers::write_fields(double time, Fluid& fluid, const Particles* particl
   FieldFrame frame;
   frame.time = time;
   frame.cells = shown_cells(fluid, plan_, scene_.output.viscosity);
+  if (!images_.empty() && ranks_.max(fields_ && fields_->at_first() ? 1.0 : 0.0) > 0.0)
+    add_images(images_, fluid, frame.cells);
   if (fluid.cover()) frame.flux = mean_arrived_momentum(fluid) * plan_.units.velocity();
   if (particles) add_particles(*particles, frame);
   if (fields_)
     fields_->write(frame, ranks_);
   else
-    lbm::write_fields(-1, frame.cells, scene_.box.dimension, ranks_);
+    send_fields(frame.cells, ranks_);
   writing_["fields"] += seconds_since(begin);
 }
 
@@ -340,49 +371,27 @@ std::string Observers::speed_text() const {
 
 Summary Observers::summary(double wall_seconds) const {
   Summary s;
-  const long cells = static_cast<long>(plan_.domain.nx) * plan_.domain.ny * plan_.domain.nz;
-  s.cells = cells;
+  s.cells = static_cast<long>(plan_.domain.nx) * plan_.domain.ny * plan_.domain.nz;
   s.steps = static_cast<long>(intervals_done_) * plan_.fluid_steps;
   s.substeps = plan_.substeps;
   s.physical_seconds = time_of(intervals_done_);
   s.wall_seconds = wall_seconds;
-  s.mlups = static_cast<double>(cells) * static_cast<double>(intervals_done_ - first_) *
+  s.mlups = static_cast<double>(s.cells) * static_cast<double>(intervals_done_ - first_) *
             plan_.fluid_steps / wall_seconds * 1e-6;
   s.writing = writing_;
   s.ma_max = max_speed_ * std::numbers::sqrt3;
   s.ma_paper = max_speed_;
   s.re = plan_.reynolds;
   s.re_h = plan_.reynolds_cell;
-  s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(cells);
-  s.parameters = {{"cell", plan_.units.dx},
-                  {"time_step", plan_.units.dt},
-                  {"interval", plan_.interval()},
-                  {"tau", plan_.kernel.parameters.tau},
-                  {"density", scene_.fluid.density},
-                  {"kinematic_viscosity", scene_.fluid.viscosity},
-                  {"gravity_x", scene_.fluid.gravity.x()},
-                  {"gravity_y", scene_.fluid.gravity.y()},
-                  {"depth", scene_.box.depth},
-                  {"box_x", scene_.box.size.x()},
-                  {"box_y", scene_.box.size.y()},
-                  {"velocity_scale", scene_.fluid.velocity_scale}};
+  s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(s.cells);
+  s.parameters = scene_parameters(scene_, plan_);
   if (flow_) flow_->describe(s.parameters);
-  if (viscosity_) {
-    s.parameters["share_at_rest_bound"] = viscosity_->at_rest_bound;
-    s.parameters["share_at_shear_bound"] = viscosity_->at_shear_bound;
-    s.parameters["shear_rate_max"] = viscosity_->largest_shear / plan_.units.dt;
-    s.parameters["mean_viscosity"] =
-        viscosity_->mean_viscosity * plan_.units.dx * plan_.units.dx / plan_.units.dt;
-  }
-  if (scene_.box.dimension == 3) {
-    s.parameters["box_z"] = scene_.box.size.z();
-    s.parameters["gravity_z"] = scene_.fluid.gravity.z();
-  }
-  if (scene_.particles) {
-    s.parameters["diameter"] = scene_.particles->diameter.hi;
-    s.parameters["particle_density"] = scene_.particles->density.hi;
-    s.parameters["cells_per_diameter"] = plan_.cells_per_diameter;
-  }
+  if (!viscosity_) return s;
+  const double unit = plan_.units.dx * plan_.units.dx / plan_.units.dt;
+  s.parameters.insert({{"share_at_rest_bound", viscosity_->at_rest_bound},
+                       {"share_at_shear_bound", viscosity_->at_shear_bound},
+                       {"shear_rate_max", viscosity_->largest_shear / plan_.units.dt},
+                       {"mean_viscosity", viscosity_->mean_viscosity * unit}});
   return s;
 }
 

@@ -108,6 +108,7 @@ class Observers {
   const std::string folder_;
   std::optional<SteadyWatch> steady_;
   std::optional<FieldWriter> fields_;      // of rank 0, like the tables
+  std::vector<Geometry> images_;           // among the obstacles, where fields are asked for
   std::map<std::string, double> writing_;  // kind of file -> seconds
   bool fresh_ = true;                      // it does not go on from a checkpoint
   std::int64_t first_, end_, guard_every_, intervals_done_ = 0;

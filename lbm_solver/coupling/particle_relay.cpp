@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "lbm_solver/coupling/carrier.h"
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "protocol/wire/clumps.h"
 #include "protocol/wire/routing.h"
 

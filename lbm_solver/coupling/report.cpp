@@ -131,112 +131,171 @@ std::string describe_choices() {
   return out + "or \"auto\"; lbm_solver/docs/scene.md has every key of a scene\n";
 }
 
-std::string describe(const Scene& s, const Plan& p) {
-  std::string out = fmt::format("scene        {} ({})\n", s.title, s.file);
-  const auto line = [&out](const char* name, const std::string& value) {
-    out += fmt::format("{:<12} {}\n", name, value);
-  };
-  const bool flat = s.box.dimension == 2;
+namespace {
+
+/// Lines of a report, each under a name.
+class Report {
+ public:
+  explicit Report(std::string title) : text_(std::move(title)) {}
+  void line(const char* name, const std::string& value) {
+    text_ += fmt::format("{:<12} {}\n", name, value);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+void report_box(const Scene& s, const Plan& p, Report& report) {
   const std::string sides =
       fmt::format("sides x {}, y {}", text(s.box.sides[0]), text(s.box.sides[1]));
   const std::string precision = p.kernel.precision == Precision::Single ? ", single precision" : "";
-  if (flat) {
-    line("box", fmt::format("{:.6g} × {:.6g} m, depth {:.6g} m, {}", s.box.size.x(), s.box.size.y(),
-                            s.box.depth, sides));
-    line("grid", fmt::format("{} × {} cells of {:.6g} m{}", p.domain.nx, p.domain.ny, p.units.dx,
-                             precision));
+  if (s.box.dimension == 2) {
+    report.line("box", fmt::format("{:.6g} × {:.6g} m, depth {:.6g} m, {}", s.box.size.x(),
+                                   s.box.size.y(), s.box.depth, sides));
+    report.line("grid", fmt::format("{} × {} cells of {:.6g} m{}", p.domain.nx, p.domain.ny,
+                                    p.units.dx, precision));
   } else {
-    line("box", fmt::format("{:.6g} × {:.6g} × {:.6g} m, {}, z {}", s.box.size.x(), s.box.size.y(),
-                            s.box.size.z(), sides, text(s.box.sides[2])));
-    line("grid", fmt::format("{} × {} × {} cells of {:.6g} m, {}{}", p.domain.nx, p.domain.ny,
-                             p.domain.nz, p.units.dx, p.kernel.lattice, precision));
+    report.line("box", fmt::format("{:.6g} × {:.6g} × {:.6g} m, {}, z {}", s.box.size.x(),
+                                   s.box.size.y(), s.box.size.z(), sides, text(s.box.sides[2])));
+    report.line("grid",
+                fmt::format("{} × {} × {} cells of {:.6g} m, {}{}", p.domain.nx, p.domain.ny,
+                            p.domain.nz, p.units.dx, p.kernel.lattice, precision));
   }
-  line("fluid step", fmt::format("Δt = {:.6g} s, C = Δx/Δt = {:.6g} m/s [{}]", p.units.dt,
-                                 p.lattice_speed, p.step_limit));
-  line("fluid", fmt::format("ρ {:.6g} kg/m³, ν {:.6g} m²/s, τ = {:.6g}", s.fluid.density,
-                            s.fluid.viscosity, p.kernel.parameters.tau));
-  for (const std::string& text : describe_viscosity(s, p)) line("viscosity", text);
-  line("numbers",
-       fmt::format("Re {:.4g}, Re_h {:.3g}, Ma = u/c_s {:.3g}, u/C {:.3g} at u = {:.4g} m/s",
-                   p.reynolds, p.reynolds_cell, p.u_over_c * std::numbers::sqrt3, p.u_over_c,
-                   s.fluid.velocity_scale));
+}
+
+void report_fluid(const Scene& s, const Plan& p, Report& report) {
+  report.line("fluid step", fmt::format("Δt = {:.6g} s, C = Δx/Δt = {:.6g} m/s [{}]", p.units.dt,
+                                        p.lattice_speed, p.step_limit));
+  report.line("fluid", fmt::format("ρ {:.6g} kg/m³, ν {:.6g} m²/s, τ = {:.6g}", s.fluid.density,
+                                   s.fluid.viscosity, p.kernel.parameters.tau));
+  for (const std::string& text : describe_viscosity(s, p)) report.line("viscosity", text);
+  report.line("numbers",
+              fmt::format("Re {:.4g}, Re_h {:.3g}, Ma = u/c_s {:.3g}, u/C {:.3g} at u = {:.4g} m/s",
+                          p.reynolds, p.reynolds_cell, p.u_over_c * std::numbers::sqrt3, p.u_over_c,
+                          s.fluid.velocity_scale));
+}
+
+void report_solids(const Scene& s, const Plan& p, Report& report) {
   if (s.particles)
-    line("particles",
-         fmt::format("D {:.6g} … {:.6g} m, D/Δx {:.4g}, ρ {:.6g} … {:.6g} kg/m³",
-                     s.particles->diameter.lo, s.particles->diameter.hi, p.cells_per_diameter,
-                     s.particles->density.lo, s.particles->density.hi));
+    report.line(
+        "particles",
+        fmt::format("D {:.6g} … {:.6g} m, D/Δx {:.4g}, ρ {:.6g} … {:.6g} kg/m³",
+                    s.particles->diameter.lo, s.particles->diameter.hi, p.cells_per_diameter,
+                    s.particles->density.lo, s.particles->density.hi));
   if (s.particles && s.coupling) {
-    const std::string text = hydraulic_text(*s.particles, p.units.dx, flat);
-    if (!text.empty()) line("hydraulic", text);
+    const std::string text = hydraulic_text(*s.particles, p.units.dx, s.box.dimension == 2);
+    if (!text.empty()) report.line("hydraulic", text);
   }
   for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
     const std::string text = shape_text(s.obstacles[i], p.units.dx);
-    if (!text.empty()) line("obstacle", fmt::format("{}. {}", i + 1, text));
+    if (!text.empty()) report.line("obstacle", fmt::format("{}. {}", i + 1, text));
   }
   if (s.coupling)
-    line("coupling",
-         fmt::format("interval {:.6g} s = {} fluid step(s) = {} solid steps of {:.4g} s [{}]",
-                     p.interval(), p.fluid_steps, p.substeps, p.interval() / p.substeps,
-                     p.substep_limit));
-  if (!p.collision_reason.empty())
-    line("collision", fmt::format("{} [{}]", name_of(p.kernel.collision), p.collision_reason));
-  if (!p.solid_reason.empty())
-    line("solids",
-         fmt::format("{}, {} [{}]", name_of(p.scheme), p.kernel.solid_term, p.solid_reason));
-  if (!p.expected_error.empty()) line("error", p.expected_error);
-  line("duration", fmt::format("{:.6g} s = {} intervals", s.end_time, p.intervals));
-  for (const std::string& w : p.warnings) line("warning", w);
-  return out;
+    report.line("coupling",
+                fmt::format("interval {:.6g} s = {} fluid step(s) = {} solid steps of {:.4g} s "
+                            "[{}]",
+                            p.interval(), p.fluid_steps, p.substeps, p.interval() / p.substeps,
+                            p.substep_limit));
 }
 
-std::string describe_cost(const Scene& s, const Plan& p) {
-  std::string on = p.kernel.lattice + ", collision " + name_of(p.kernel.collision), off;
-  const auto part = [&](bool used, const std::string& text, const std::string& absent) {
-    std::string& list = used ? on : off;
+/// What was chosen, and why.
+void report_choices(const Plan& p, Report& report) {
+  if (!p.collision_reason.empty())
+    report.line("collision",
+                fmt::format("{} [{}]", name_of(p.kernel.collision), p.collision_reason));
+  if (!p.solid_reason.empty())
+    report.line("solids",
+                fmt::format("{}, {} [{}]", name_of(p.scheme), p.kernel.solid_term, p.solid_reason));
+  if (!p.expected_error.empty()) report.line("error", p.expected_error);
+}
+
+}  // namespace
+
+std::string describe(const Scene& s, const Plan& p) {
+  Report report(fmt::format("scene        {} ({})\n", s.title, s.file));
+  report_box(s, p, report);
+  report_fluid(s, p, report);
+  report_solids(s, p, report);
+  report_choices(p, report);
+  report.line("duration", fmt::format("{:.6g} s = {} intervals", s.end_time, p.intervals));
+  for (const std::string& w : p.warnings) report.line("warning", w);
+  return report.text();
+}
+
+namespace {
+
+/// The parts of a fluid by what they are called, those that a scene has and those that it lacks.
+class Parts {
+ public:
+  explicit Parts(std::string always) : on_(std::move(always)) {}
+  void add(bool used, const std::string& text, const std::string& absent) {
+    std::string& list = used ? on_ : off_;
     list += (list.empty() ? "" : ", ") + (used ? text : absent);
-  };
+  }
+  void add(bool used, const std::string& text) { add(used, text, text); }
+  const std::string& on() const { return on_; }
+  const std::string& off() const { return off_; }
+
+ private:
+  std::string on_, off_;
+};
+
+void add_fluid_parts(const Scene& s, const Plan& p, Parts& parts) {
   const bool walls = std::any_of(s.box.sides.begin(), s.box.sides.begin() + s.box.dimension,
                                  [](SideKind k) { return k == SideKind::Wall; });
-  part(walls, "half-way walls", "walls");
-  part(!s.boundaries.empty(), "boundaries: " + boundary_text(s), "inlets and outlets");
-  part(s.box.pressure_jump.norm() > 0.0, "pressure jump", "pressure jump");
-  part(p.kernel.force, "body force", "body force");
-  part(p.kernel.parameters.viscosity_table != nullptr, name_of(s.fluid.law.model) + " viscosity",
-       "viscosity that depends on shear");
-  part(p.kernel.parameters.smagorinsky > 0.0,
-       p.kernel.eddies == EddyModel::Wale ? "WALE turbulence" : "Smagorinsky turbulence",
-       "turbulence model");
+  parts.add(walls, "half-way walls", "walls");
+  parts.add(!s.boundaries.empty(), "boundaries: " + boundary_text(s), "inlets and outlets");
+  parts.add(s.box.pressure_jump.norm() > 0.0, "pressure jump");
+  parts.add(p.kernel.force, "body force");
+  parts.add(p.kernel.parameters.viscosity_table != nullptr,
+            name_of(s.fluid.law.model) + " viscosity", "viscosity that depends on shear");
+  parts.add(p.kernel.parameters.smagorinsky > 0.0,
+            p.kernel.eddies == EddyModel::Wale ? "WALE turbulence" : "Smagorinsky turbulence",
+            "turbulence model");
+}
+
+void add_solid_parts(const Scene& s, const Plan& p, Parts& parts) {
   const bool imb = p.scheme == SolidScheme::ImmersedMovingBoundary;
-  part(p.kernel.solid_term != "none" || !imb,
-       imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel) + ", loads"
-           : name_of(p.scheme) + ", loads",
-       "solids");
+  parts.add(p.kernel.solid_term != "none" || !imb,
+            imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel) + ", loads"
+                : name_of(p.scheme) + ", loads",
+            "solids");
   const auto moving = std::ranges::count_if(
       s.obstacles, [](const ObstacleScene& o) { return o.motion.has_value(); });
-  part(!s.obstacles.empty(),
-       fmt::format("{} obstacles at rest{}",
-                   static_cast<std::ptrdiff_t>(s.obstacles.size()) - moving,
-                   moving > 0 ? fmt::format(", {} that move", moving) : ""),
-       "obstacles");
-  part(s.coupling.has_value(), "solid program", "solid program");
-  part(s.box.dimension == 3, "three dimensions", "3D");
-  part(p.kernel.precision == Precision::Single, "single precision", "single precision");
-  if (s.coupling) {
-    part(s.coupling->inner_inertia, "inertia of the fluid inside", "inertia of the fluid inside");
-    part(s.coupling->buoyancy != protocol::Buoyancy::None,
-         std::string("buoyancy ") + buoyancy_text(s.coupling->buoyancy), "buoyancy");
-  }
-  if (s.coupling) part(s.coupling->lubrication_range > 0.0, "lubrication", "lubrication");
+  parts.add(!s.obstacles.empty(),
+            fmt::format("{} obstacles at rest{}",
+                        static_cast<std::ptrdiff_t>(s.obstacles.size()) - moving,
+                        moving > 0 ? fmt::format(", {} that move", moving) : ""),
+            "obstacles");
+  parts.add(s.coupling.has_value(), "solid program");
+  parts.add(s.box.dimension == 3, "three dimensions", "3D");
+  parts.add(p.kernel.precision == Precision::Single, "single precision");
+  if (!s.coupling) return;
+  parts.add(s.coupling->inner_inertia, "inertia of the fluid inside");
+  parts.add(s.coupling->buoyancy != protocol::Buoyancy::None,
+            std::string("buoyancy ") + buoyancy_text(s.coupling->buoyancy), "buoyancy");
+  parts.add(s.coupling->lubrication_range > 0.0, "lubrication");
+}
+
+/// The bodies of a scene as far as it says where they are.
+std::vector<Body> known_bodies(const Scene& s, const Plan& p) {
+  if (!s.coupling) return {};
+  std::vector<Body> bodies = obstacle_bodies(s, p);
+  for (const Vec3& x : s.particles->start)
+    bodies.push_back({static_cast<std::int64_t>(bodies.size() + 1), p.units.to_lattice_position(x),
+                      0.5 * s.particles->diameter.hi / p.units.dx});
+  return bodies;
+}
+
+}  // namespace
+
+std::string describe_cost(const Scene& s, const Plan& p) {
+  Parts parts(p.kernel.lattice + ", collision " + name_of(p.kernel.collision));
+  add_fluid_parts(s, p, parts);
+  add_solid_parts(s, p, parts);
   Fluid fluid = make_fluid(s, p);
-  std::vector<Body> bodies;
-  if (s.coupling) {
-    bodies = obstacle_bodies(s, p);
-    for (const Vec3& x : s.particles->start)
-      bodies.push_back({static_cast<std::int64_t>(bodies.size() + 1),
-                        p.units.to_lattice_position(x),
-                        0.5 * s.particles->diameter.hi / p.units.dx});
-  }
-  const double step = measure_step(fluid, bodies);
+  const double step = measure_step(fluid, known_bodies(s, p));
   double bytes = 0.0;
   for (const auto& [part, size] : fluid.bytes()) bytes += size;
   const double cells = static_cast<double>(p.domain.nx) * p.domain.ny * p.domain.nz;
@@ -246,7 +305,7 @@ std::string describe_cost(const Scene& s, const Plan& p) {
       "cost         {:.3g} MB; {:.3g} s of fluid at the {:.0f} million updates/s just measured, "
       "one "
       "thread{}\n",
-      on, off, bytes * 1e-6, total, cells / step * 1e-6,
+      parts.on(), parts.off(), bytes * 1e-6, total, cells / step * 1e-6,
       s.coupling ? "; the solid's time comes on top" : "");
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lbm_solver/base/record.h"
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/field/decomposition.h"
 
 namespace lbm {

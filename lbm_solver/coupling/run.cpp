@@ -9,7 +9,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/block_balance.h"
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/coupling/particle_relay.h"
 #include "lbm_solver/coupling/run_state.h"
@@ -55,8 +55,9 @@ class CoupledRun {
         options_(options),
         log_(log),
         start_(start_of(options, plan, restart)),
-        solid_(channel, make_hello(scene, plan, start_, ranks.cells()), scene.coupling->timeout),
-        relay_(make_hello(scene, plan, start_), plan.units, ranks),
+        solid_(channel, make_handshake(scene, plan, start_, ranks.cells()),
+               scene.coupling->timeout),
+        relay_(make_handshake(scene, plan, start_), plan.units, ranks),
         balance_(scene, plan, ranks),
         fluid_(make_fluid(scene, plan, ranks)),
         bodies_(obstacle_bodies(scene, plan)),
@@ -74,7 +75,7 @@ class CoupledRun {
             partner_.program, partner_.program_version, plan.substeps, plan.interval(),
             scene.coupling->overlapped ? ", overlapped" : "");
     for (const std::string& wall :
-         protocol::one_sided_walls(make_hello(scene, plan, start_, ranks.cells()), partner_))
+         protocol::one_sided_walls(make_handshake(scene, plan, start_, ranks.cells()), partner_))
       log.say(start_.interval, "warning", "{}", wall);
     if (!partner_.sides)
       log.say(start_.interval, "coupling",
@@ -83,7 +84,7 @@ class CoupledRun {
     if (!restart) return;
     load_from(*restart, [&] {
       load(restart->record);
-      memory_ = restart->record.part("particles");
+      saved_particles_ = restart->record.part("particles");
     });
     say_restart(*restart, log);
   }
@@ -117,21 +118,14 @@ class CoupledRun {
         ending_ = "stopped by solid: " + *arrival.goodbye;
         break;
       }
-      if (arrival.head.flags & protocol::kCheckpoint) {
-        if (!checkpoint_asked_)
-          throw protocol::ProtocolError(
-              fmt::format("interval {}: {} says that it has written a checkpoint, for which nobody "
-                          "had asked (flag 4 of the loads)",
-                          interval, partner_.program));
-        write_checkpoint(interval);
-      }
+      if (arrival.head.flags & protocol::kCheckpoint) complete_checkpoint(interval);
       stop_wished_ = arrival.head.flags & protocol::kStopWished;
       const bool last = arrival.head.flags & protocol::kLast;
       // a frame may find the disk full: until it is written both still stand at this interval
       if (!times_.any() || !observers_.draws_at(interval))
-        stands_at_.reset();
-      else if (!memory_)
-        memory_ = particles_.save();
+        resumable_interval_.reset();
+      else if (!saved_particles_)
+        saved_particles_ = particles_.save();
       particles_.arrive(relay_.arrive(arrival.particles), plan_.interval());
       particles_.tell(arrival.report);
       if (particles_.has_clumps()) expect_takes_clumps(plan_.scheme);
@@ -140,12 +134,12 @@ class CoupledRun {
       observers_.at_state(interval, *fluid_, &particles_, last);
       clock_.charge("output");
       if (last) break;
-      stands_at_.reset();
-      memory_.reset();
+      resumable_interval_.reset();
+      saved_particles_.reset();
       for (int step = 0; step < plan_.fluid_steps; ++step) advance(step);
       solid_.answer(relay_.give_back(particles_.mean_loads(plan_.fluid_steps)),
                     flags_after(interval));
-      stands_at_ = interval + 1;
+      resumable_interval_ = interval + 1;
       clock_.charge("exchange");
       observers_.after_interval(interval, *fluid_, &particles_);
       clock_.charge("output");
@@ -172,7 +166,7 @@ class CoupledRun {
   /// Goes on with other blocks as from a checkpoint on other ranks, but in memory: at no time is
   /// more there than the cells in two places.
   void move_to(const Decomposition& to) {
-    const auto stands_at = std::exchange(stands_at_, std::nullopt);
+    const auto stands_at = std::exchange(resumable_interval_, std::nullopt);
     Record record;
     record.set("fluid", fluid_->save());
     record.set("particles", particles_.save());
@@ -186,9 +180,19 @@ class CoupledRun {
     fluid_.emplace(make_fluid(scene_, plan_, to));
     particles_ = Particles(plan_.units, scene_, to, plan_.kernel.solid_term);
     load(record);
-    memory_ = record.part("particles");  // until the next ones arrive
+    saved_particles_ = record.part("particles");  // until the next ones arrive
     force_is_set_ = false;
-    stands_at_ = stands_at;
+    resumable_interval_ = stands_at;
+  }
+
+  /// The solid has written its part of a checkpoint.
+  void complete_checkpoint(std::int64_t interval) {
+    if (!checkpoint_asked_)
+      throw protocol::ProtocolError(
+          fmt::format("interval {}: {} says that it has written a checkpoint, for which nobody had "
+                      "asked (flag 4 of the loads)",
+                      interval, partner_.program));
+    write_checkpoint(interval);
   }
 
   /// The force on the fluid that carries the particles' weight, anew where their number changes.
@@ -266,7 +270,7 @@ class CoupledRun {
     const protocol::SolidParts parts(options_.out + "/" + name);
     Record record = state_record(scene_, plan_, *fluid_, observers_, interval,
                                  coupled ? parts.name(interval) : "");
-    record.set("particles", memory_ ? *memory_ : particles_.save());
+    record.set("particles", saved_particles_ ? *saved_particles_ : particles_.save());
     lbm::write_checkpoint(fluid_part(options_.out, name), record, interval, before, &ranks_);
     clock_.charge("checkpoint");
   }
@@ -277,14 +281,16 @@ class CoupledRun {
   void keep_last_state(const std::exception& error) {
     const bool everywhere = ranks_.alone() || dynamic_cast<const NumericsError*>(&error) ||
                             dynamic_cast<const protocol::PeerFault*>(&error);
-    if (!times_.any() || !stands_at_ || !everywhere) return;
+    if (!times_.any() || !resumable_interval_ || !everywhere) return;
     const protocol::Deadline deadline(error, "lbm");
     try {
       if (!fluid_->extremes().finite) return;
-      write_state("fault", *stands_at_, "");
-      log_.say(*stands_at_, "fault", "the fluid's last state is kept in {}/fault.h5", options_.out);
+      write_state("fault", *resumable_interval_, "");
+      log_.say(*resumable_interval_, "fault", "the fluid's last state is kept in {}/fault.h5",
+               options_.out);
     } catch (const std::exception& second) {
-      log_.say(*stands_at_, "fault", "the fluid's last state is not kept: {}", second.what());
+      log_.say(*resumable_interval_, "fault", "the fluid's last state is not kept: {}",
+               second.what());
     }
   }
 
@@ -312,10 +318,12 @@ class CoupledRun {
   bool stop_wished_ = false;  // the solid was told to end
   bool checkpoint_asked_ = false;
   bool keep_last_;  // the fluid's part that lies there is good
-  std::optional<std::int64_t> stands_at_ = start_.interval;  // no part of an interval is done
-  Vec3 carried_ = Vec3::Zero();   // weight of the particles in the fluid [N]
-  bool force_is_set_ = true;      // that carries it
-  std::optional<Record> memory_;  // of particles_ before those of stands_at_ arrived
+  std::optional<std::int64_t> resumable_interval_ =
+      start_.interval;           // no part of an interval is done
+  Vec3 carried_ = Vec3::Zero();  // weight of the particles in the fluid [N]
+  bool force_is_set_ = true;     // that carries it
+  std::optional<Record>
+      saved_particles_;  // of particles_ before those of resumable_interval_ arrived
   std::string ending_ = "complete";
   PartClock clock_;
 };

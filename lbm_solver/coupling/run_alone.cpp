@@ -2,7 +2,7 @@
 /// The time loop of a fluid without a solid program.
 #include <algorithm>
 
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/run.h"
 #include "lbm_solver/coupling/run_state.h"
 #include "lbm_solver/coupling/stop_times.h"

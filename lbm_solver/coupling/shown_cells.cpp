@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/coupling/shown_cells.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <utility>
+#include <variant>
 
 #include "lbm_solver/solver/viscosity_use.h"
 
@@ -72,6 +76,42 @@ CellFields shown_cells(Fluid& fluid, const Plan& plan, bool viscosity) {
       for (int y = 0; y < piece.size[1]; ++y) painter.row(y, z);
   };
   return shown;
+}
+
+std::vector<Geometry> image_solids(const Scene& scene, const Plan& plan) {
+  std::vector<Geometry> images;
+  if (std::ranges::none_of(scene.obstacles, [](const auto& o) { return o.image.has_value(); }))
+    return images;
+  for (Geometry& shape : obstacle_shapes(scene, plan))
+    if (std::holds_alternative<VoxelSolid>(shape.shape)) images.push_back(std::move(shape));
+  return images;
+}
+
+void add_images(const std::vector<Geometry>& images, const Fluid& fluid, CellFields& shown) {
+  const Block cells = fluid.cells();
+  const auto nx = static_cast<std::size_t>(cells.size[0]),
+             ny = static_cast<std::size_t>(cells.size[1]);
+  const auto covered = std::make_shared<std::vector<float>>(nx * ny * cells.size[2]);
+  for (const Geometry& image : images)
+    fill(image, fluid.domain(), cells, RadiusShift{}, [&](const FractionSpan& span) {
+      float* row = covered->data() + nx * (ny * span.z + span.y) + span.x;
+      for (std::size_t x = 0; x < span.fractions.size(); ++x)
+        row[x] = std::min(1.0F, row[x] + static_cast<float>(span.fractions[x]));
+    });
+  shown.fields.push_back({"image_fraction", "1", 1});
+  shown.make = [make = shown.make, covered, cells, nx, ny](const CellRange& piece,
+                                                           std::span<float> to) {
+    make(piece, to.first(to.size() - piece.count()));
+    float* out = to.last(piece.count()).data();
+    const auto row = [&](int y, int z) {
+      const int from_y = piece.begin[1] - cells.begin[1] + y,
+                from_z = piece.begin[2] - cells.begin[2] + z;
+      return covered->data() + nx * (ny * from_z + from_y);
+    };
+    for (int z = 0; z < piece.size[2]; ++z)
+      for (int y = 0; y < piece.size[1]; ++y, out += piece.size[0])
+        std::copy_n(row(y, z) + piece.begin[0] - cells.begin[0], piece.size[0], out);
+  };
 }
 
 Vec3 mean_arrived_momentum(const Fluid& fluid) {

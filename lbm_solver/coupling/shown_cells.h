@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include "lbm_solver/io/cell_set.h"
+#include <vector>
+
+#include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/io/cell_fields.h"
 #include "lbm_solver/solver/fluid.h"
 #include "lbm_solver/solver/plan.h"
 
@@ -11,6 +14,13 @@ namespace lbm {
 /// what they cover. The fluid must outlive it.
 /// @param viscosity  that too
 CellFields shown_cells(Fluid& fluid, const Plan& plan, bool viscosity);
+
+/// The images among a scene's obstacles.
+std::vector<Geometry> image_solids(const Scene& scene, const Plan& plan);
+
+/// Adds `image_fraction`: what images cover of each cell, which tells them from grains and other
+/// obstacles.
+void add_images(const std::vector<Geometry>& images, const Fluid& fluid, CellFields& shown);
 
 /// Mean over the box of the momentum that has arrived in its cells. It is added up in whole
 /// numbers: the same bit for bit on any ranks. Collective.

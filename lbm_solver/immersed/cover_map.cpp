@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -164,7 +165,7 @@ void CoverMap::add(const Geometry& geometry) {
 }
 
 void CoverMap::add(std::unique_ptr<MovingShape> shape) {
-  BPLBM_EXPECT(footprints_.empty());
+  if (!footprints_.empty()) throw std::logic_error("a mesh that moves comes before the bodies");
   fixed_.emplace_back();
   movers_.push_back({std::move(shape), fixed_.size() - 1, {}, {}, {}, {}});
   motions_.resize(1 + movers_.size());

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/average_writer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <fstream>
 
+#include "lbm_solver/io/cell_set.h"
 #include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
@@ -43,7 +44,7 @@ void write_xdmf(const std::string& path, double time, const Units& units, const 
 void write_averages(const std::string& folder, const FieldAverages& a, const Units& units,
                     const Decomposition& ranks) {
   const Domain& domain = ranks.domain();
-  if (ranks.rank() != 0) return write_fields(-1, a.cells, domain.dimension(), ranks);
+  if (ranks.rank() != 0) return send_fields(a.cells, ranks);
   using protocol::hdf5::set_attribute;
   const auto file =
       protocol::hdf5::open_file(folder + "/averages.h5", protocol::hdf5::Open::Create);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lbm_solver/base/units.h"
-#include "lbm_solver/io/cell_set.h"
+#include "lbm_solver/io/cell_fields.h"
 
 namespace lbm {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/cell_set.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -97,24 +96,18 @@ CellValues values_in(hid_t set, const std::string& path, const std::string& insi
   return values;
 }
 
-bool CellFields::has(const std::string& name) const {
-  return std::ranges::any_of(fields, [&](const CellField& f) { return name == f.name; });
-}
-
 void write_fields(hid_t group, const CellFields& fields, int dimension,
                   const Decomposition& ranks) {
+  if (ranks.rank() != 0) return send_fields(fields, ranks);
   std::vector<std::unique_ptr<CellSet>> sets;
-  int numbers = 0;
   for (const CellField& field : fields.fields) {
-    numbers += field.components;
-    if (ranks.rank() != 0) continue;
     const CellLayout layout{ranks.domain().cells(), dimension,
                             field.components > 1 ? field.components : 0};
     sets.push_back(std::make_unique<CellSet>(group, field.name, H5T_NATIVE_FLOAT, layout));
     protocol::hdf5::set_attribute(sets.back()->id(), "unit", std::string(field.unit));
   }
   ranks.in_pieces<float>(
-      numbers, fields.make, [&](const CellRange& piece, std::span<const float> all) {
+      fields.components(), fields.make, [&](const CellRange& piece, std::span<const float> all) {
         const float* from = all.data();
         for (std::size_t k = 0; k < sets.size(); ++k) {
           sets[k]->write(piece, H5T_NATIVE_FLOAT, from);

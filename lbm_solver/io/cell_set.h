@@ -2,12 +2,12 @@
 /// Numbers of every cell of the box in a file, which come and go a piece at a time.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "lbm_solver/base/cell_values.h"
 #include "lbm_solver/field/decomposition.h"
+#include "lbm_solver/io/cell_fields.h"
 #include "protocol/transport/hdf5_file.h"
 
 namespace lbm {
@@ -49,21 +49,7 @@ CellValues values_in(hid_t set, const std::string& path, const std::string& insi
 /// Whether a data set has four dimensions.
 bool has_cells(hid_t set);
 
-/// One of the fields that are written together.
-struct CellField {
-  const char *name, *unit;
-  int components = 1;
-};
-/// What is shown of every cell, in single precision.
-struct CellFields {
-  std::vector<CellField> fields;
-  /// Fills the numbers of a piece of this rank's cells, one field after another, each
-  /// [z][y][x][components].
-  std::function<void(const CellRange&, std::span<float>)> make;
-
-  bool has(const std::string& name) const;
-};
-/// Writes them into a group, each with its unit. Rank 0 writes, others send: the group means
+/// Writes fields into a group, each with its unit. Rank 0 writes, others send: the group means
 /// nothing there. Collective.
 void write_fields(hid_t group, const CellFields& fields, int dimension, const Decomposition& ranks);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/field_writer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "lbm_solver/io/cell_set.h"
 #include "lbm_solver/io/hdf5_array.h"
 #include "lbm_solver/io/view_script.h"
 #include "protocol/transport/hdf5_file.h"
@@ -65,6 +66,16 @@ void append_row(std::vector<double>& to, const Particle& p, bool flat) {
                          s.omega[0], s.omega[1], s.omega[2], type});
 }
 
+/// Sizes of a data set of a frame that was written before; 0 where there is none.
+std::array<hsize_t, 3> shape_of(hid_t group, const char* name) {
+  if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0, 0};
+  const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open ") + name);
+  const Handle space(H5Dget_space(set), H5Sclose, "read a space");
+  std::array<hsize_t, 3> shape{0, 0, 0};
+  check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read a size");
+  return shape;
+}
+
 /// States of the bonds of a frame that was written before.
 std::vector<double> bond_states(hid_t group) {
   if (H5Lexists(group, "bond_state", H5P_DEFAULT) <= 0) return {};
@@ -76,15 +87,47 @@ std::vector<double> bond_states(hid_t group) {
   return states;
 }
 
+bool has_clumps(const FieldFrame& f) {
+  return std::ranges::any_of(f.particles, [](const Particle& p) { return is_part(p.shape); });
+}
+
 std::string group_name(std::size_t index) {
   return fmt::format("frame{:06}", index);
+}
+
+/// The table of particles, and by columns, as ParaView wants them.
+void write_particles(hid_t group, const FieldFrame& f, int dimension) {
+  const bool flat = dimension == 2;
+  const std::size_t count = f.particles.size();
+  std::vector<double> table, places;
+  for (const Particle& p : f.particles) {
+    append_row(table, p, flat);
+    places.insert(places.end(), p.state.x.begin(), p.state.x.begin() + dimension);
+  }
+  write_array(group, "particles", table, {count, flat ? hsize_t{8} : hsize_t{12}},
+              flat ? "1,m,m,m,m/s,m/s,rad/s,1" : "1,m,m,m,m,m/s,m/s,m/s,rad/s,rad/s,rad/s,1",
+              flat ? "id,x,y,radius,vx,vy,omega,type"
+                   : "id,x,y,z,radius,vx,vy,vz,omega_x,omega_y,omega_z,type");
+  if (count == 0) return;
+  std::vector<double> carriers;
+  for (const Particle& p : f.particles)
+    carriers.push_back(static_cast<double>(protocol::carrier_of(p.shape)));
+  if (has_clumps(f)) write_array(group, "particle_carrier", carriers, {count}, "1");
+  write_array(group, "particle_places", places, {count, static_cast<hsize_t>(dimension)}, "m");
+  for (const PointValue& value : kPointValues) {
+    std::vector<double> column;
+    for (std::size_t i = 0; i < count; ++i) value.append(column, f.particles[i], f.loads[i]);
+    std::vector<hsize_t> shape{count};
+    if (value.components > 1) shape.push_back(value.components);
+    write_array(group, (std::string("particle_") + value.name).c_str(), column, shape, value.unit);
+  }
 }
 
 }  // namespace
 
 FieldWriter::FieldWriter(const std::string& folder, const Units& units, int dimension,
-                         double keep_until)
-    : folder_(folder), units_(units), dimension_(dimension) {
+                         double keep_until, ShownObstacles obstacles)
+    : folder_(folder), units_(units), dimension_(dimension), obstacles_(std::move(obstacles)) {
   write_view();
   if (keep_until > 0.0 && keep_frames(keep_until)) return;
   const Handle file = protocol::hdf5::open_file(folder_ + "/fields.h5", Open::Create);
@@ -122,20 +165,16 @@ bool FieldWriter::keep_frames(double until) {
     const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose, "open " + name);
     const double time = protocol::hdf5::real_attribute(group, "time");
     if (time >= until) break;
-    const auto rows = [&](const char* name) -> std::array<hsize_t, 3> {
-      if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return {0, 0, 0};
-      const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, std::string("open ") + name);
-      const Handle space(H5Dget_space(set), H5Sclose, "read a space");
-      std::array<hsize_t, 3> shape{0, 0, 0};
-      check(H5Sget_simple_extent_dims(space, shape.data(), nullptr), "read a size");
-      return shape;
-    };
-    const auto cells = rows("pressure");
+    const auto cells = shape_of(group, "pressure");
     const auto along = [&](int axis) {  // x last
       return axis < dimension_ ? static_cast<int>(cells[dimension_ - 1 - axis]) : 1;
     };
-    entries_.push_back({time, along(0), along(1), along(2), rows("solid_fraction")[0] > 0,
-                        rows("viscosity")[0] > 0, rows("particles")[0], bond_states(group)});
+    entries_.push_back(
+        {time, along(0), along(1), along(2), shape_of(group, "solid_fraction")[0] > 0,
+         shape_of(group, "viscosity")[0] > 0, shape_of(group, "image_fraction")[0] > 0,
+         shape_of(group, "particle_carrier")[0] > 0, shape_of(group, "particles")[0],
+         bond_states(group)});
+    if (entries_.size() == 1 && !obstacles_.lie_in(group)) obstacles_ = {};
   }
   for (std::size_t i = entries_.size();; ++i) {
     const std::string name = group_name(i);
@@ -160,10 +199,13 @@ void FieldWriter::write(const FieldFrame& f, const Decomposition& ranks) {
                     n[2],
                     f.cells.has("solid_fraction"),
                     f.cells.has("viscosity"),
+                    f.cells.has("image_fraction"),
+                    has_clumps(f),
                     f.particles.size(),
                     f.bond_state};
   write_fields(group, f.cells, dimension_, ranks);
-  write_particles(group, f);
+  write_particles(group, f, dimension_);
+  obstacles_.write(group, f.time, at_first());
   if (bonds > 0) {
     const auto d = static_cast<hsize_t>(dimension_);
     write_array(group, "bond_ends", f.bond_ends, {2 * bonds, d}, "m");
@@ -172,35 +214,6 @@ void FieldWriter::write(const FieldFrame& f, const Decomposition& ranks) {
   }
   entries_.push_back(entry);
   write_xdmf();
-}
-
-/// The table of particles, and by columns, as ParaView wants them.
-void FieldWriter::write_particles(hid_t group, const FieldFrame& f) const {
-  const bool flat = dimension_ == 2;
-  const std::size_t count = f.particles.size();
-  std::vector<double> table, places;
-  for (const Particle& p : f.particles) {
-    append_row(table, p, flat);
-    places.insert(places.end(), p.state.x.begin(), p.state.x.begin() + dimension_);
-  }
-  write_array(group, "particles", table, {count, flat ? hsize_t{8} : hsize_t{12}},
-              flat ? "1,m,m,m,m/s,m/s,rad/s,1" : "1,m,m,m,m,m/s,m/s,m/s,rad/s,rad/s,rad/s,1",
-              flat ? "id,x,y,radius,vx,vy,omega,type"
-                   : "id,x,y,z,radius,vx,vy,vz,omega_x,omega_y,omega_z,type");
-  if (count == 0) return;
-  std::vector<double> carriers;
-  for (const Particle& p : f.particles)
-    carriers.push_back(static_cast<double>(protocol::carrier_of(p.shape)));
-  if (std::ranges::any_of(f.particles, [](const Particle& p) { return is_part(p.shape); }))
-    write_array(group, "particle_carrier", carriers, {count}, "1");
-  write_array(group, "particle_places", places, {count, static_cast<hsize_t>(dimension_)}, "m");
-  for (const PointValue& value : kPointValues) {
-    std::vector<double> column;
-    for (std::size_t i = 0; i < count; ++i) value.append(column, f.particles[i], f.loads[i]);
-    std::vector<hsize_t> shape{count};
-    if (value.components > 1) shape.push_back(value.components);
-    write_array(group, (std::string("particle_") + value.name).c_str(), column, shape, value.unit);
-  }
 }
 
 /// Cells of a frame, x last.
@@ -240,15 +253,17 @@ std::string FieldWriter::fluid_grid(std::size_t index) const {
       R"(<DataItem Format="XML" Dimensions="3">{:.9g} {:.9g} {:.9g}</DataItem></Geometry>
 )",
       e.time, shape_text(e, 1), behind, units_.origin.y(), units_.origin.x(), h, h, h);
-  const auto attribute = [&](const char* name, const char* kind, const std::string& shape) {
+  const auto attribute = [&](const char* name, const char* kind, const std::string& shape,
+                             std::size_t frame) {
     out += fmt::format(
         "  <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n", name,
-        kind, item(group_name(index) + "/" + name, shape, 4));
+        kind, item(group_name(frame) + "/" + name, shape, 4));
   };
-  attribute("pressure", "Scalar", shape_text(e, 0));
-  attribute("velocity", "Vector", shape_text(e, 0) + " 3");
-  if (e.solids) attribute("solid_fraction", "Scalar", shape_text(e, 0));
-  if (e.viscosity) attribute("viscosity", "Scalar", shape_text(e, 0));
+  attribute("pressure", "Scalar", shape_text(e, 0), index);
+  attribute("velocity", "Vector", shape_text(e, 0) + " 3", index);
+  if (e.solids) attribute("solid_fraction", "Scalar", shape_text(e, 0), index);
+  if (e.viscosity) attribute("viscosity", "Scalar", shape_text(e, 0), index);
+  if (entries_[0].images) attribute("image_fraction", "Scalar", shape_text(e, 0), 0);
   return out + "</Grid>\n";
 }
 
@@ -267,6 +282,9 @@ std::string FieldWriter::particle_grid(std::size_t index) const {
         value.name, value.components > 1 ? "Vector" : "Scalar",
         item(group + "/particle_" + value.name,
              value.components > 1 ? fmt::format("{} {}", n, value.components) : n, 8));
+  if (e.clumps)
+    out += fmt::format("  <Attribute Name=\"carrier\" Center=\"Node\">{}</Attribute>\n",
+                       item(group + "/particle_carrier", n, 8));
   return out + "</Grid>\n";
 }
 
@@ -330,7 +348,7 @@ std::string FieldWriter::nothing(const char* name, double time) const {
   return out + "</Grid>\n";
 }
 
-/// Timelines: the fluid, and the particles, bonds and broken bonds, where a frame has any.
+/// Timelines: the fluid; particles, bonds and broken bonds, where a frame has any; obstacles.
 void FieldWriter::write_xdmf() const {
   std::ofstream out(folder_ + "/fields.xdmf");
   out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n";
@@ -356,6 +374,16 @@ void FieldWriter::write_xdmf() const {
         return std::any_of(e.bonds.begin(), e.bonds.end(), [](double s) { return s != 0.0; });
       },
       [&](std::size_t i) { return bond_grid(i, true); });
+  timeline(
+      "walls", [&](const Entry&) { return obstacles_.any_walls(); },
+      [&](std::size_t i) {
+        return obstacles_.walls_grid(entries_[i].time, group_name(0), group_name(i));
+      });
+  timeline(
+      "round_obstacles", [&](const Entry&) { return obstacles_.any_round(); },
+      [&](std::size_t i) {
+        return obstacles_.round_grid(entries_[i].time, group_name(0), group_name(i));
+      });
   out << "</Domain></Xdmf>\n";
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lbm_solver/base/units.h"
-#include "lbm_solver/io/cell_set.h"
-#include "protocol/transport/hdf5_file.h"
+#include "lbm_solver/io/cell_fields.h"
+#include "lbm_solver/io/shown_obstacles.h"
 #include "protocol/wire/session.h"
 
 namespace lbm {
@@ -17,7 +17,7 @@ namespace lbm {
 struct FieldFrame {
   double time = 0.0;  ///< [s]
   /// pressure against rest and hydrostatic [Pa], velocity [m/s] and, where there are any, solid
-  /// fraction and kinematic viscosity [m²/s]
+  /// fraction and kinematic viscosity [m²/s]; in the first frame of a file what images cover
   CellFields cells;
   /// Mean over the box of the momentum that has arrived, over the density at rest [m/s]: in steady
   /// flow the flux through every face of the box, covered cells too, under every solid term.
@@ -29,21 +29,23 @@ struct FieldFrame {
 };
 
 /// Writes frames to `fields.h5` and keeps `fields.xdmf` beside it, which ParaView opens: fluid,
-/// particles, bonds and broken bonds, in two dimensions all in the x-y plane, with the fluid as a
-/// layer one cell thick just behind the particles. (ParaView's readers put a two-dimensional mesh
-/// of this kind into the y-z plane.) A reader shows the frame before where a block has none: one
-/// without particles (bonds) has a particle of radius 0 (a bond of length 0) in the lower corner.
-/// `view.py` beside it makes a picture, or the scene in ParaView, of all of it. Every array names
-/// its unit, every table its columns, as attributes. The file is closed after every frame: a kill
-/// loses the frame in progress, seldom (while the file is being closed) makes the file unreadable;
-/// a restart then puts it aside and begins a new one.
+/// particles, bonds and broken bonds, obstacles where they are, in two dimensions all in the x-y
+/// plane, with the fluid as a layer one cell thick just behind the particles. (ParaView's readers
+/// put a two-dimensional mesh of this kind into the y-z plane.) A reader shows the frame before
+/// where a block has none: one without particles (bonds) has a particle of radius 0 (a bond of
+/// length 0) in the lower corner. `view.py` beside it makes a picture, or the scene in ParaView, of
+/// all of it. Every array names its unit, every table its columns, as attributes. The file is
+/// closed after every frame: a kill loses the frame in progress, seldom (while the file is being
+/// closed) makes the file unreadable; a restart then puts it aside and begins a new one.
 class FieldWriter {
  public:
   /// @param folder      must exist
   /// @param keep_until  a run that goes on keeps the frames before this time
   FieldWriter(const std::string& folder, const Units& units, int dimension = 2,
-              double keep_until = 0.0);
-  /// Collective: other ranks than the first, which alone has a writer, call `write_fields`.
+              double keep_until = 0.0, ShownObstacles obstacles = {});
+  /// The next frame is the first one of its file.
+  bool at_first() const { return entries_.empty(); }
+  /// Collective: other ranks than the first, which alone has a writer, call `send_fields`.
   void write(const FieldFrame& frame, const Decomposition& ranks);
 
  private:
@@ -57,18 +59,18 @@ class FieldWriter {
   struct Entry {
     double time;
     int nx, ny, nz;
-    bool solids, viscosity;
+    bool solids, viscosity, images, clumps;
     std::size_t particles;
     std::vector<double> bonds;  // their states
   };
   std::vector<unsigned long long> shape(const Entry& entry) const;
   std::string shape_text(const Entry& entry, int more) const;
-  void write_particles(hid_t group, const FieldFrame& frame) const;
 
   std::string folder_;
   Units units_;
   int dimension_;
   std::vector<Entry> entries_;
+  ShownObstacles obstacles_;
 };
 
 }  // namespace lbm

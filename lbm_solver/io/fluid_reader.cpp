@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/fluid_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 
@@ -15,35 +15,31 @@ using ViscosityModel = ViscosityScene::Model;
 
 /// Keys of the laws that a model has not.
 void refuse_other_keys(TableReader& t, ViscosityModel model) {
-  const bool newtonian = model == ViscosityModel::Newtonian || model == ViscosityModel::Smagorinsky;
-  const bool yields = model == ViscosityModel::Bingham || model == ViscosityModel::HerschelBulkley;
-  const bool carreau = model == ViscosityModel::Carreau;
+  const ViscosityParts parts = parts_of(model);
   const auto refuse = [&](bool known, std::initializer_list<const char*> keys) {
     for (const char* key : keys)
       if (!known && t.has(key))
         t.fail(key, "has no meaning with model = \"" + name_of(model) + "\"", "leave it out");
   };
-  refuse(!newtonian, {"nu_min", "nu_max", "shear_rate"});
-  refuse(!newtonian && !carreau, {"consistency"});
-  refuse(!newtonian && model != ViscosityModel::Bingham, {"index"});
-  refuse(yields, {"yield_stress", "regularisation"});
-  refuse(carreau, {"time_constant"});
+  refuse(parts.varies, {"nu_min", "nu_max", "shear_rate"});
+  refuse(parts.consistency, {"consistency"});
+  refuse(parts.index, {"index"});
+  refuse(parts.yield_stress, {"yield_stress", "regularisation"});
+  refuse(parts.time_constant, {"time_constant"});
 }
 
 ViscosityScene read_viscosity(TableReader t) {
   ViscosityScene v;
   std::vector<std::string> names;
   for (const ViscosityModel model : known_viscosities()) names.push_back(name_of(model));
-  const std::string name = t.choice_or("model", names.front(), names);
+  const std::string name = t.choice_or("model", name_of(ViscosityModel::Newtonian), names);
   v.model = known_viscosities()[std::ranges::find(names, name) - names.begin()];
   refuse_other_keys(t, v.model);
-  const bool newtonian =
-      v.model == ViscosityModel::Newtonian || v.model == ViscosityModel::Smagorinsky;
-  const bool carreau = v.model == ViscosityModel::Carreau;
-  if (!newtonian && !carreau) v.consistency = t.number("consistency", Bounds::positive(), "Pa sⁿ");
-  if (!newtonian && v.model != ViscosityModel::Bingham) v.index = t.number("index", {0.1, 2.0}, "");
-  if (carreau) v.time_constant = t.number("time_constant", Bounds::positive(), "s");
-  if (v.model == ViscosityModel::Bingham || v.model == ViscosityModel::HerschelBulkley) {
+  const ViscosityParts parts = parts_of(v.model);
+  if (parts.consistency) v.consistency = t.number("consistency", Bounds::positive(), "Pa sⁿ");
+  if (parts.index) v.index = t.number("index", {0.1, 2.0}, "");
+  if (parts.time_constant) v.time_constant = t.number("time_constant", Bounds::positive(), "s");
+  if (parts.yield_stress) {
     v.yield_stress = t.number("yield_stress", Bounds::positive(), "Pa");
     if (t.choice_or("regularisation", "bi_viscosity", {"bi_viscosity", "papanastasiou"}) !=
         "bi_viscosity")
@@ -52,9 +48,9 @@ ViscosityScene read_viscosity(TableReader t) {
   v.nu_min = t.optional_number("nu_min", Bounds::positive(), "m²/s");
   v.nu_max = t.optional_number("nu_max", Bounds::positive(), "m²/s");
   v.shear_rate = t.optional_number("shear_rate", Bounds::positive(), "1/s");
-  if (carreau && !(v.nu_min && v.nu_max))
+  if (parts.bounds && !(v.nu_min && v.nu_max))
     t.fail(v.nu_min ? "nu_max" : "nu_min", "is missing",
-           "Carreau's law goes from nu_max at rest to nu_min at high shear rates");
+           "the law goes from nu_max at rest to nu_min at high shear rates");
   if (v.nu_min && v.nu_max && *v.nu_min >= *v.nu_max)
     t.fail("nu_min",
            fmt::format("= {:.6g} m²/s is not below nu_max = {:.6g} m²/s", *v.nu_min, *v.nu_max),
@@ -88,14 +84,13 @@ FluidScene read_fluid(TableReader t, int d, const std::string& scene_file) {
   FluidScene fluid;
   fluid.density = t.number("density", Bounds::positive(), "kg/m³");
   if (t.has("viscosity")) fluid.law = read_viscosity(t.table("viscosity"));
-  const bool newtonian = fluid.law.model == ViscosityModel::Newtonian ||
-                         fluid.law.model == ViscosityModel::Smagorinsky;
-  if (!newtonian && t.has("kinematic_viscosity"))
+  const bool varies = parts_of(fluid.law.model).varies;
+  if (varies && t.has("kinematic_viscosity"))
     t.fail("kinematic_viscosity",
            "stands beside a viscosity that depends on the shear rate, model = \"" +
                name_of(fluid.law.model) + "\"",
            "leave it out");
-  if (newtonian) fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
+  if (!varies) fluid.viscosity = t.number("kinematic_viscosity", Bounds::positive(), "m²/s");
   fluid.gravity = t.vector_or_zero("gravity", d, "[m/s²]");
   fluid.body_force = t.vector_or_zero("body_force", d, "[m/s²]");
   fluid.body_force_ramp = t.number_or("body_force_ramp", 0.0, Bounds::non_negative(), "s");
@@ -126,8 +121,7 @@ void settle_viscosity(const TableReader& root, Scene& scene) {
   if (scene.numerics.wale && constant == 0.0)
     root.fail("numerics.eddy_viscosity", "= \"wale\" stands without its constant",
               "give numerics.smagorinsky, e.g. 0.1");
-  if (scene.numerics.wale && law.model != ViscosityModel::Newtonian &&
-      law.model != ViscosityModel::Smagorinsky)
+  if (scene.numerics.wale && parts_of(law.model).varies)
     root.fail(
         "numerics.eddy_viscosity",
         "= \"wale\" stands beside a viscosity that depends on the shear rate, whose table has "

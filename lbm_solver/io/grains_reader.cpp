@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/grains_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 
@@ -12,7 +12,7 @@
 namespace lbm {
 namespace {
 
-constexpr std::uintmax_t kLargestTable = 256'000'000;  // bytes
+constexpr std::uintmax_t kLargestGrains = 256'000'000;  // bytes
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void read_grains(TableReader t, const std::string& scene_file, int d,
   t.finish();
   if (name.empty()) return;
   const auto path = std::filesystem::path(scene_file).parent_path() / name;
-  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
+  if (const auto problem = protocol::why_unreadable(path, kLargestGrains); !problem.empty())
     t.fail("file", "= \"" + name + "\": " + problem, "put a table of grains beside the scene");
   t.note("content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
   TextTable table(path);

@@ -10,7 +10,7 @@
 
 namespace lbm {
 
-/// Writes an array of float or double into a group of an HDF5 file.
+/// Writes an array of float, double or int into a group of an HDF5 file.
 /// @param unit  of the numbers, or of each column
 /// @param columns  of a table, their names
 /// @throws std::runtime_error  it cannot be written
@@ -18,7 +18,9 @@ template <class T>
 void write_array(hid_t group, const char* name, const std::vector<T>& data,
                  const std::vector<hsize_t>& shape, const char* unit,
                  const char* columns = nullptr) {
-  const hid_t type = std::is_same_v<T, float> ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE;
+  const hid_t type = std::is_same_v<T, int>     ? H5T_NATIVE_INT
+                     : std::is_same_v<T, float> ? H5T_NATIVE_FLOAT
+                                                : H5T_NATIVE_DOUBLE;
   const protocol::hdf5::Handle space(
       H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose,
       "make a space");

@@ -17,18 +17,18 @@
 #include <span>
 #include <stdexcept>
 
+#include "lbm_solver/io/hdf5_files.h"
 #include "lbm_solver/io/picture_file.h"
+#include "lbm_solver/io/refusal.h"
+#ifdef BPLBM_HDF5
 #include "protocol/transport/hdf5_file.h"
+#endif
 #include "protocol/wire/numbers.h"
 
 namespace lbm {
 namespace {
 
 constexpr double kMostVoxels = 2e9;
-
-[[noreturn]] void refuse(const std::string& problem, const std::string& remedy) {
-  throw std::invalid_argument(problem + "; " + remedy);
-}
 
 /// A type of number in a file.
 struct NumberType {
@@ -164,6 +164,7 @@ GreyImage read_npy(const std::string& path) {
                       descr[0] == '>');
 }
 
+#ifdef BPLBM_HDF5
 GreyImage read_h5(const std::string& path, const std::string& dataset) try {
   using protocol::hdf5::Handle;
   if (dataset.empty()) refuse("may hold many arrays", "name one: dataset = \"/rock\"");
@@ -184,6 +185,11 @@ GreyImage read_h5(const std::string& path, const std::string& dataset) try {
 } catch (const std::runtime_error& error) {
   refuse(error.what(), "look at it with h5dump");
 }
+#else
+GreyImage read_h5(const std::string&, const std::string&) {
+  refuse(kNeedsHdf5, "save it as .npy or .raw, or build lbm with HDF5");
+}
+#endif
 
 /// A voxel that is no number.
 void check_finite(const GreyImage& image) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/motion_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <vector>
@@ -13,9 +13,9 @@
 namespace lbm {
 namespace {
 
-using Kind = MotionScene::Kind;
+using MotionKind = MotionScene::Kind;
 
-constexpr std::uintmax_t kLargestTable = 100'000'000;  // bytes
+constexpr std::uintmax_t kLargestMotion = 100'000'000;  // bytes
 
 /// Lines `time,x,y[,z][,angle]` [s, m, rad].
 void read_table(TableReader& t, const std::string& scene_file, int dimension, MotionScene& m) {
@@ -27,7 +27,7 @@ void read_table(TableReader& t, const std::string& scene_file, int dimension, Mo
   const std::string remedy = "the first line is " + plain + " or " + turning + " (in s, m and rad)";
   if (name.empty()) t.fail("motion_table", "is missing", "name a table of " + turning);
   const auto path = std::filesystem::path(scene_file).parent_path() / name;
-  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
+  if (const auto problem = protocol::why_unreadable(path, kLargestMotion); !problem.empty())
     fail(problem, "put a table " + turning + " beside the scene");
   t.note("motion_table_content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
   TextTable file(path);
@@ -65,7 +65,7 @@ void read_oscillation(TableReader& t, int dimension, MotionScene& m) {
 void read_axis(TableReader& t, int dimension, ReadMotion& read) {
   MotionScene& m = read.motion;
   const bool turns = m.angular_velocity != 0.0 || m.angular_amplitude != 0.0 ||
-                     (m.kind == Kind::Table && dimension == 3 && t.has("axis"));
+                     (m.kind == MotionKind::Table && dimension == 3 && t.has("axis"));
   read.has_pivot = t.has("about");
   if (read.has_pivot) m.about = t.vector("about", dimension, "[m], through which the axis goes");
   for (const double angle : m.angles)
@@ -85,21 +85,21 @@ std::optional<ReadMotion> read_motion(TableReader& t, const std::string& scene_f
   MotionScene& m = read.motion;
   const std::string kind =
       t.choice_or("motion", "", {"linear", "rotation", "oscillation", "table"});
-  m.kind = kind == "linear"     ? Kind::Linear
-           : kind == "rotation" ? Kind::Rotation
-           : kind == "table"    ? Kind::Table
-                                : Kind::Oscillation;
-  if (m.kind == Kind::Linear) {
+  m.kind = kind == "linear"     ? MotionKind::Linear
+           : kind == "rotation" ? MotionKind::Rotation
+           : kind == "table"    ? MotionKind::Table
+                                : MotionKind::Oscillation;
+  if (m.kind == MotionKind::Linear) {
     m.velocity = t.vector("velocity", d, "[m/s]");
     if (m.velocity.isZero(0.0)) t.fail("velocity", "is zero", "leave motion out: it is at rest");
   }
-  if (m.kind == Kind::Rotation) {
+  if (m.kind == MotionKind::Rotation) {
     m.angular_velocity = t.number("angular_velocity", {}, "rad/s");
     if (m.angular_velocity == 0.0)
       t.fail("angular_velocity", "is zero", "leave motion out: it is at rest");
   }
-  if (m.kind == Kind::Oscillation) read_oscillation(t, d, m);
-  if (m.kind == Kind::Table) read_table(t, scene_file, d, m);
+  if (m.kind == MotionKind::Oscillation) read_oscillation(t, d, m);
+  if (m.kind == MotionKind::Table) read_table(t, scene_file, d, m);
   read_axis(t, d, read);
   m.surface_only = t.flag_or("surface_only", false);
   return read;

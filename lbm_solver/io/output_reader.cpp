@@ -7,6 +7,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "lbm_solver/io/hdf5_files.h"
+
 namespace lbm {
 namespace {
 
@@ -84,11 +86,13 @@ OutputScene read_output(TableReader& root, const BoxScene& box) {
   OutputScene output;
   TableReader t = root.optional_table("output");
   output.fields_every = t.number_or("fields_every", 0.0, Bounds::non_negative(), "s");
+  expect_hdf5(t, "fields_every", output.fields_every > 0.0);
   output.viscosity = t.flag_or("viscosity", false);
   output.probe_every = t.number_or("probe_every", 0.0, Bounds::non_negative(), "s");
   output.points = t.vectors_or_none("points", box.dimension, "[m]");
   output.probe_particles = read_probe_particles(t);
   t.finish();
+  expect_hdf5(root, "average", root.has("average"));
   if (root.has("average")) output.average = read_average(root.table("average"));
   for (const TableReader& sensor : root.tables("sensor"))
     output.sensors.push_back(read_sensor(sensor, box));

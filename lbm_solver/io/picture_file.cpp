@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/picture_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdint>
 #include <cstring>
@@ -17,12 +17,10 @@
 
 #include <memory>
 
+#include "lbm_solver/io/refusal.h"
+
 namespace lbm {
 namespace {
-
-[[noreturn]] void refuse(const std::string& problem, const std::string& remedy) {
-  throw std::invalid_argument(problem + "; " + remedy);
-}
 
 #if defined(BPLBM_PNG) || defined(BPLBM_TIFF)
 constexpr std::uint32_t kMostPixels = 100'000;  // along a side

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/profile_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -14,7 +14,7 @@
 namespace lbm {
 namespace {
 
-constexpr std::uintmax_t kLargestTable = 256'000'000;  // bytes
+constexpr std::uintmax_t kLargestProfile = 256'000'000;  // bytes
 constexpr const char* kKey = "profile_table";
 
 /// Places along the side's axes, those that the file names, and factors.
@@ -87,7 +87,7 @@ ProfileScene read_profile(TableReader& t, SideName side, int dimension,
   const auto fail = [&](const std::string& problem, const std::string& remedy) {
     t.fail(kKey, "= \"" + name + "\": " + problem, remedy);
   };
-  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
+  if (const auto problem = protocol::why_unreadable(path, kLargestProfile); !problem.empty())
     fail(problem, "put a table of factors beside the scene");
   t.note(std::string(kKey) + "_content",
          fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));

@@ -2,6 +2,7 @@
 #include "lbm_solver/io/scene_reader.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "lbm_solver/io/boundary_reader.h"
 #include "lbm_solver/io/fluid_reader.h"
 #include "lbm_solver/io/grains_reader.h"
+#include "lbm_solver/io/hdf5_files.h"
 #include "lbm_solver/io/obstacle_reader.h"
 #include "lbm_solver/io/output_reader.h"
 #include "lbm_solver/io/script_variables.h"
@@ -189,6 +191,7 @@ Scene read_tables(const toml::table& merged, const std::vector<std::string>& fil
   scene.end_time = run.number("end_time", Bounds::positive(), "s");
   scene.steady_below = run.number_or("steady_below", 0.0, Bounds::non_negative(), "");
   scene.checkpoint_every = run.number_or("checkpoint_every", 0.0, Bounds::non_negative(), "s");
+  expect_hdf5(run, "checkpoint_every", scene.checkpoint_every > 0.0);
   run.finish();
   for (const TableReader& t : root.tables("boundary"))
     scene.boundaries.push_back(read_boundary(t, scene.box, files.front()));

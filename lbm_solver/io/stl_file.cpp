@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/stl_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <cmath>
@@ -14,16 +14,13 @@
 #include <stdexcept>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/io/refusal.h"
 
 namespace lbm {
 namespace {
 
 constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes of a binary file
 constexpr double kSame = 1e-6;                    // of the mesh's size
-
-[[noreturn]] void refuse(const std::string& problem, const std::string& remedy) {
-  throw std::invalid_argument(problem + "; " + remedy);
-}
 
 /// Three corners a facet.
 using Corners = std::vector<Vec3>;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
@@ -123,6 +124,11 @@ std::string TableReader::where(const toml::node* node, const std::string& key) c
 void TableReader::fail(const std::string& key, const std::string& problem,
                        const std::string& remedy) const {
   throw InputError(where(table_.get(key), key) + " " + problem, remedy);
+}
+
+bool TableReader::has(const std::string& key) {
+  known_.insert(key);
+  return table_.contains(key);
 }
 
 const toml::node* TableReader::find(const std::string& key) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <toml++/toml.h>
+#include <toml++/impl/forward_declarations.h>  // the whole takes seconds to compile
 
 #include <limits>
 #include <map>
@@ -53,10 +53,7 @@ class TableReader {
   /// Puts a value among the settings that is no key of the table.
   void note(const std::string& key, const std::string& value) const;
 
-  bool has(const std::string& key) {
-    known_.insert(key);
-    return table_.contains(key);
-  }
+  bool has(const std::string& key);
   TableReader table(const std::string& key);
   /// A table that may be absent: then an empty one.
   TableReader optional_table(const std::string& key);

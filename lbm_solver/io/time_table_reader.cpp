@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/time_table_reader.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <vector>
@@ -13,7 +13,7 @@
 namespace lbm {
 namespace {
 
-constexpr std::uintmax_t kLargestTable = 256'000'000;  // bytes
+constexpr std::uintmax_t kLargestTimeTable = 256'000'000;  // bytes
 
 }  // namespace
 
@@ -29,7 +29,7 @@ TimeTableScene read_time_table(TableReader& t, const std::string& key, const std
   const auto fail = [&](const std::string& problem, const std::string& remedy) {
     t.fail(key, "= \"" + name + "\": " + problem, remedy);
   };
-  if (const auto problem = protocol::why_unreadable(path, kLargestTable); !problem.empty())
+  if (const auto problem = protocol::why_unreadable(path, kLargestTimeTable); !problem.empty())
     fail(problem, "put a table `time,factor` beside the scene");
   t.note(key + "_content", fmt::format("checksum {:08x}", protocol::fingerprint(path).crc));
   TextTable file(path);

@@ -1,10 +1,13 @@
-"""Shows this run in ParaView: the fluid's speed, grains with their radius, intact bonds; broken bonds are hidden.
+"""Shows this run in ParaView: the fluid's speed, grains and the spheres of clumps, obstacles and moving walls where they are,
+intact bonds; broken bonds are hidden.
 
     pvpython view.py                           writes view.png beside this file
     pvpython view.py --time 0.5 --out a.png    (or pvbatch)
     paraview --script=view.py                  the same scene, ready, in the program
 
-Without a screen it draws on one that xvfb-run (Debian: xvfb, xauth) makes. In three dimensions the fluid is cut at the middle of the box, and grains in front of the cut are left out.
+Without a screen it draws on one that xvfb-run (Debian: xvfb, xauth) makes. In three dimensions the fluid is cut at the middle of
+the box, and what lies in front of the cut is left out. Light grey in the plane is what solids cover of it. Beside it stand all
+solids whole, without the fluid, and walls that can be looked through.
 """
 
 import argparse
@@ -17,6 +20,7 @@ from paraview import simple as pv
 
 PIXELS = 1100  # of the longer side
 GREEN, RED, GREY, DARK = [0.18, 0.56, 0.31], [0.84, 0.15, 0.16], [0.78, 0.76, 0.72], [0.2, 0.2, 0.2]
+STONE = [0.45, 0.55, 0.66]  # of obstacles
 MOST_CELLS = 50_000_000  # that are read, all frames together, to find the largest speed
 
 
@@ -63,17 +67,24 @@ def named(proxy, name):
     return proxy
 
 
-def fluid_shown(fluid, flat, bounds):
-    """The fluid without what solids cover, in three dimensions at the middle of the box."""
-    shown = fluid
+def fluid_and_solids(fluid, flat, bounds):
+    """The fluid without what solids cover, and what they cover or None; in three dimensions at the middle of the box."""
+    plane = fluid
     if not flat:
-        shown = named(pv.Slice(Input=fluid, SliceType="Plane"), "cut")
-        shown.SliceType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
-        shown.SliceType.Normal = [0, 1, 0]
-    if fluid.CellData.GetArray("solid_fraction"):
-        shown = named(pv.Threshold(Input=shown, Scalars=["CELLS", "solid_fraction"], ThresholdMethod="Below Lower Threshold",
-                                   LowerThreshold=0.5), "fluid without solids")
-    return shown
+        plane = named(pv.Slice(Input=fluid, SliceType="Plane"), "cut")
+        plane.SliceType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
+        plane.SliceType.Normal = [0, 1, 0]
+    if not fluid.CellData.GetArray("solid_fraction"):
+        return plane, None
+    parts = (False, "fluid without solids"), (True, "solids in the plane")
+    return [half_covered(plane, "solid_fraction", *part) for part in parts]
+
+
+def half_covered(cells, array, solid, name):
+    """The cells of which solids cover at least a half, or the others."""
+    part = pv.Threshold(Input=cells, Scalars=["CELLS", array], LowerThreshold=0.5, UpperThreshold=0.5,
+                        ThresholdMethod="Above Upper Threshold" if solid else "Below Lower Threshold")
+    return named(part, name)
 
 
 def highest(fluid, field, times):
@@ -113,10 +124,13 @@ def colour(display, view, fluid, field, largest):
     display.SetScalarBarVisibility(view, True)
 
 
-def behind(points, bounds):
-    """Grains, or ends of bonds, that the cut of the fluid leaves to be seen."""
+def behind(points, flat, bounds):
+    """Grains, ends of bonds or walls that the cut of the fluid leaves to be seen; all of them without bounds."""
+    if flat or bounds is None:
+        return points
     cut = pv.Clip(Input=points, ClipType="Plane", Invert=0)
     cut.ClipType.Origin = [0.5 * (bounds[k] + bounds[k + 1]) for k in (0, 2, 4)]
+    cut.ClipType.Origin[1] += 1e-4 * (bounds[3] - bounds[2])  # else a face would lie in the plane of the fluid
     cut.ClipType.Normal = [0, 1, 0]
     return cut
 
@@ -125,6 +139,8 @@ def glyphs(points, flat, part, name):
     """A disc or sphere at each point. part: of its radius."""
     glyph = pv.Glyph(Input=points, GlyphType="Cylinder" if flat else "Sphere", ScaleArray=["POINTS", "radius"],
                      ScaleFactor=2.0 * part, OrientationArray=["POINTS", "No orientation array"], GlyphMode="All Points")
+    if not flat:
+        glyph.GlyphType.ThetaResolution = glyph.GlyphType.PhiResolution = 16
     if flat:
         glyph.GlyphType.Resolution, glyph.GlyphType.Height = 24, 1e-4
         glyph.GlyphTransform.Rotate = [90.0, 0.0, 0.0]
@@ -144,17 +160,63 @@ def plain(source, view, rgb, lift, width=None):
     return display
 
 
-def show_solids(view, flat, bounds, cell, broken):
-    grains = block("particles")
-    if grains:
-        shown = grains if flat else behind(grains, bounds)
+def show_balls(view, flat, bounds, cell, name, words, rgb):
+    """Discs with rims, or spheres, of a block of centres and radii."""
+    balls = block(name)
+    if balls:
+        shown = behind(balls, flat, bounds)
         if flat:
-            plain(glyphs(shown, flat, 1.0, "rims of grains"), view, DARK, 0.2 * cell)
-        plain(glyphs(shown, flat, 0.9 if flat else 1.0, "grains"), view, GREY, 0.3 * cell * flat)
+            plain(glyphs(shown, flat, 1.0, f"rims of {words}"), view, DARK, 0.2 * cell)
+        display = plain(glyphs(shown, flat, 0.9 if flat else 1.0, words), view, rgb, 0.3 * cell * flat)
+        display.Opacity = 0.35 if not flat and bounds is None and block("bonds") else 1.0  # bonds lie inside of grains
+
+
+def show_obstacles(view, flat, bounds, cell, fluid, covered):
+    """What does not move by the flow: walls where they are, round ones, images, and the plane's part of all solids."""
+    if covered:
+        display = plain(covered, view, GREY, 0.0)
+        display.Ambient, display.Diffuse = 1.0, 0.0
+    if fluid.CellData.GetArray("image_fraction"):
+        whole = half_covered(fluid, "image_fraction", True, "image")
+        name = "image behind the plane" if bounds else "image whole"
+        display = plain(named(behind(whole, flat, bounds), name), view, STONE, 0.05 * cell * flat)
+        display.SetRepresentationType("Surface")
+    walls = block("walls")
+    if walls:
+        display = plain(named(behind(walls, flat, bounds), "walls behind the plane" if bounds else "walls whole"), view,
+                        DARK if flat else STONE, 0.35 * cell * flat, 2.0)
+        display.Opacity = 1.0 if bounds else 0.4
+    show_balls(view, flat, bounds, cell, "round_obstacles", "round obstacles", STONE)
+
+
+def show_solids(view, flat, bounds, cell, broken):
+    show_balls(view, flat, bounds, cell, "particles", "grains", GREY)
     for name, rgb, visible in (("bonds", GREEN, True), ("broken_bonds", RED, broken)):
         bonds = block(name)
         if bonds:
-            plain(bonds if flat else behind(bonds, bounds), view, rgb, 0.4 * cell * flat, 2.0).Visibility = int(visible)
+            plain(behind(bonds, flat, bounds), view, rgb, 0.4 * cell * flat, 2.0).Visibility = int(visible)
+
+
+def beside(view, fluid, cell, broken):
+    """A second view of three dimensions: all solids whole."""
+    other = pv.CreateRenderView()
+    pv.AssignViewToLayout(view=other, layout=pv.GetLayout(view), hint=0)
+    white(other)
+    show_obstacles(other, False, None, cell, fluid, None)
+    show_solids(other, False, None, cell, broken)
+    frame(other, fluid)
+    return other
+
+
+def white(view):
+    view.UseColorPaletteForBackground = 0
+    view.Background = [1, 1, 1]
+    view.OrientationAxesVisibility = 0
+
+
+def frame(view, fluid):
+    box = pv.Show(named(pv.Outline(Input=fluid), "box"), view)
+    box.AmbientColor = box.DiffuseColor = [0.3, 0.3, 0.3]
 
 
 def look(view, flat, bounds):
@@ -177,9 +239,7 @@ def main():
     args = arguments()
     need_screen()
     view = pv.GetActiveViewOrCreate("RenderView")
-    view.UseColorPaletteForBackground = 0
-    view.Background = [1, 1, 1]
-    view.OrientationAxesVisibility = 0
+    white(view)
     fluid = block("fluid")
     if fluid.CellData.GetArray(args.field) is None:
         sys.exit(f"view | error | the fields of this run have no {args.field}; a scene's output.viscosity = true writes it")
@@ -188,23 +248,30 @@ def main():
     cells = fluid.GetDataInformation().GetExtent()
     flat = cells[5] - cells[4] == 1
     largest = highest(fluid, args.field, times)
-    display = pv.Show(fluid_shown(fluid, flat, bounds), view)
+    shown, covered = fluid_and_solids(fluid, flat, bounds)
+    display = pv.Show(shown, view)
     display.SetRepresentationType("Surface")
     colour(display, view, fluid, args.field, largest)
-    show_solids(view, flat, bounds, (bounds[1] - bounds[0]) / (cells[1] - cells[0]), args.broken)
-    box = pv.Show(named(pv.Outline(Input=fluid), "box"), view)
-    box.AmbientColor = box.DiffuseColor = [0.3, 0.3, 0.3]
+    cell = (bounds[1] - bounds[0]) / (cells[1] - cells[0])
+    show_obstacles(view, flat, bounds, cell, fluid, covered)
+    show_solids(view, flat, bounds, cell, args.broken)
+    frame(view, fluid)
     label = pv.Show(pv.AnnotateTimeFilter(Input=fluid, Format="t = {time:.4g} s"), view)
     label.Color, label.FontSize, label.WindowLocation = [0, 0, 0], 14, "Lower Right Corner"
+    solids = fluid.CellData.GetArray("solid_fraction") is not None
+    views = [view] if flat or not solids else [view, beside(view, fluid, cell, args.broken)]
+    for each in views:
+        look(each, flat, bounds)
     scene = pv.GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
     scene.AnimationTime = times[-1] if args.time is None else min(times, key=lambda t: abs(t - args.time))
-    look(view, flat, bounds)
     if paraview.fromGUI:
-        pv.Render(view)
-    else:
-        pv.SaveScreenshot(args.out, view, ImageResolution=view.ViewSize)
-        print(f"view | picture {args.out}")
+        pv.RenderAllViews()
+        return
+    size = [len(views) * view.ViewSize[0], view.ViewSize[1]]
+    pv.GetLayout(view).SetSize(*size)
+    pv.SaveScreenshot(args.out, pv.GetLayout(view), ImageResolution=size)
+    print(f"view | picture {args.out}")
 
 
 main()

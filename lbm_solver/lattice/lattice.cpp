@@ -11,13 +11,18 @@ constexpr Lattice kLattices[] = {to_lattice<D2Q9>(), to_lattice<D3Q19>(), to_lat
 }  // namespace
 
 const Lattice& lattice(const std::string& name) {
-  for (const Lattice& l : kLattices)
+  std::string known;
+  for (const Lattice& l : kLattices) {
     if (name == l.name) return l;
-  throw std::invalid_argument("no lattice '" + name + "'; known: D2Q9 D3Q19 D3Q27");
+    known += std::string(" ") + l.name;
+  }
+  throw std::invalid_argument("no lattice '" + name + "'; known:" + known);
 }
 
 std::vector<std::string> known_lattices() {
-  return {D2Q9::name, D3Q19::name, D3Q27::name};
+  std::vector<std::string> names;
+  for (const Lattice& l : kLattices) names.emplace_back(l.name);
+  return names;
 }
 
 }  // namespace lbm

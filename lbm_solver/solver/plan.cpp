@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/solver/plan.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -98,9 +98,9 @@ void fit_to_end(const Scene& s, std::optional<double> given, Plan& plan) {
   plan.lattice_speed = plan.units.dx / plan.units.dt;
 }
 
-void judge_step(const Scene& s, Plan& plan) {
+/// @throws InputError  no fluid can be computed with this step
+void check_step(const Scene& s, const Plan& plan) {
   const double tau = plan.kernel.parameters.tau;
-  plan.u_over_c = s.fluid.velocity_scale / plan.lattice_speed;
   if (plan.u_over_c > kStopSpeed)
     throw InputError(
         s.file + ": numerics.time_step",
@@ -118,6 +118,11 @@ void judge_step(const Scene& s, Plan& plan) {
         fmt::format("gives τ = {:.3g}, above 3: walls and solids would be inexact", tau),
         fmt::format("take at most {:.3g} s",
                     plan.units.dx * plan.units.dx / (3.0 * s.fluid.viscosity)));
+}
+
+void judge_step(const Scene& s, Plan& plan) {
+  plan.u_over_c = s.fluid.velocity_scale / plan.lattice_speed;
+  check_step(s, plan);
   if (plan.u_over_c > kWarnSpeed * 1.001)
     plan.warnings.push_back(fmt::format(
         "velocity_scale/C = {:.3g} exceeds {}: compressibility error", plan.u_over_c, kWarnSpeed));
@@ -144,37 +149,53 @@ void judge_step(const Scene& s, Plan& plan) {
                                         plan.cells_per_diameter, kFewCells));
 }
 
+/// A scheme that the scene names, on links or markers.
+void take_scheme(const Scene& s, Plan& plan) {
+  const NumericsScene& n = s.numerics;
+  const bool shapes = std::ranges::any_of(
+      s.obstacles, [](const ObstacleScene& o) { return o.mesh || o.image || o.drum(); });
+  if (shapes)
+    throw InputError(fmt::format("{}: numerics.scheme = \"{}\" knows discs, spheres and blocks "
+                                 "at rest, no meshes and images",
+                                 s.file, n.scheme),
+                     "take scheme = \"immersed_moving_boundary\"");
+  if (n.solid_term != "auto")
+    throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
+                     "leave it out, or take scheme = \"immersed_moving_boundary\"");
+  plan.scheme = solid_scheme(n.scheme);
+  const bool links =
+      plan.scheme == SolidScheme::BounceBack || plan.scheme == SolidScheme::InterpolatedBounceBack;
+  if (s.box.dimension == 3 && !links)
+    throw InputError(fmt::format("{}: numerics.scheme = \"{}\" is there in two dimensions only",
+                                 s.file, n.scheme),
+                     "take immersed_moving_boundary, bounce_back or interpolated_bounce_back");
+  // walls are covered cells under any scheme
+  if (std::ranges::any_of(s.obstacles, [](const ObstacleScene& o) { return o.block(); }))
+    plan.kernel.solid_term = "noble_torczynski";
+}
+
+/// The solid collision operator of covered cells, where the scene leaves it open.
+void choose_solid_term(const Scene& s, Plan& plan) {
+  const auto take = [&](const char* term, const char* reason) {
+    plan.kernel.solid_term = term;
+    plan.solid_reason = std::string("auto: ") + reason;
+  };
+  const bool moving = std::ranges::any_of(
+      s.obstacles, [](const ObstacleScene& o) { return o.motion || !o.spin.isZero(0.0); });
+  if (plan.kernel.collision != CollisionOperator::Trt)
+    take("layered_noble_torczynski", "least noise where the fluid is under-resolved");
+  else if (s.coupling || moving)
+    take("layered_resistance", "exact on planes at every τ, and calm in bodies that move");
+  else
+    take("resistance", "exact on planes at every τ");
+}
+
 void choose_solids(const Scene& s, Plan& plan) {
   const NumericsScene& n = s.numerics;
   KernelChoice& k = plan.kernel;
   k.solid_term = "none";
-  const bool blocks = std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                                  [](const ObstacleScene& o) { return o.block(); });
-  const bool shapes =
-      std::any_of(s.obstacles.begin(), s.obstacles.end(),
-                  [](const ObstacleScene& o) { return o.mesh || o.image || o.drum(); });
-  const bool moving = std::ranges::any_of(
-      s.obstacles, [](const ObstacleScene& o) { return o.motion || !o.spin.isZero(0.0); });
   if (!s.coupling && s.obstacles.empty()) return;
-  if (n.scheme != "auto" && n.scheme != name_of(plan.scheme)) {
-    if (shapes)
-      throw InputError(fmt::format("{}: numerics.scheme = \"{}\" knows discs, spheres and blocks "
-                                   "at rest, no meshes and images",
-                                   s.file, n.scheme),
-                       "take scheme = \"immersed_moving_boundary\"");
-    if (n.solid_term != "auto")
-      throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
-                       "leave it out, or take scheme = \"immersed_moving_boundary\"");
-    plan.scheme = solid_scheme(n.scheme);
-    const bool links = plan.scheme == SolidScheme::BounceBack ||
-                       plan.scheme == SolidScheme::InterpolatedBounceBack;
-    if (s.box.dimension == 3 && !links)
-      throw InputError(fmt::format("{}: numerics.scheme = \"{}\" is there in two dimensions only",
-                                   s.file, n.scheme),
-                       "take immersed_moving_boundary, bounce_back or interpolated_bounce_back");
-    if (blocks) k.solid_term = "noble_torczynski";  // walls are covered cells under any scheme
-    return;
-  }
+  if (n.scheme != "auto" && n.scheme != name_of(plan.scheme)) return take_scheme(s, plan);
   const bool balanced = n.weight == "balanced" || (n.weight == "auto" && s.box.dimension == 3);
   k.weight = n.weight == "fraction" ? WeightRule::Fraction
              : balanced             ? WeightRule::Balanced
@@ -185,17 +206,7 @@ void choose_solids(const Scene& s, Plan& plan) {
                                  "only, which here is {}",
                                  s.file, n.solid_term, name_of(k.collision)),
                      "take collision = \"trt\", or solid_term = \"auto\"");
-  if (n.solid_term != "auto") return;
-  const auto take = [&](const char* term, const char* reason) {
-    k.solid_term = term;
-    plan.solid_reason = std::string("auto: ") + reason;
-  };
-  if (k.collision != CollisionOperator::Trt)
-    take("layered_noble_torczynski", "least noise where the fluid is under-resolved");
-  else if (s.coupling || moving)
-    take("layered_resistance", "exact on planes at every τ, and calm in bodies that move");
-  else
-    take("resistance", "exact on planes at every τ");
+  if (n.solid_term == "auto") choose_solid_term(s, plan);
 }
 
 /// Λ of TRT: 3/16 puts a half-way wall half-way; beside covered cells by resistance 1/10.

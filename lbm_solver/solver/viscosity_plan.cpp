@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/solver/viscosity_plan.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,6 @@
 
 namespace lbm {
 namespace {
-
-using Model = ViscosityScene::Model;
 
 constexpr double kLargestTau = 400.0;  // above, a step changes the stress by too little
 constexpr double kSlowTau = 60.0;      // above, stiff parts answer slowly
@@ -120,14 +118,15 @@ std::vector<std::string> describe_viscosity(const Scene& s, const Plan& plan) {
   const double rate = law.shear_rate(), nu = law.reference();
   std::vector<std::string> lines;
   std::string text = name_of(v.model);
-  if (v.model != Model::Carreau) text += fmt::format(", K {:.4g} Pa sⁿ", v.consistency);
-  if (v.model != Model::Bingham) text += fmt::format(", n {:.4g}", v.index);
+  const ViscosityParts parts = parts_of(v.model);
+  if (parts.consistency) text += fmt::format(", K {:.4g} Pa sⁿ", v.consistency);
+  if (parts.index) text += fmt::format(", n {:.4g}", v.index);
   if (yields(s))
     text += fmt::format(", σ_y {:.4g} Pa ({})", v.yield_stress,
                         v.regularisation == ViscosityScene::Regularisation::Papanastasiou
                             ? "Papanastasiou"
                             : "bi-viscosity");
-  if (v.model == Model::Carreau) text += fmt::format(", λ {:.4g} s", v.time_constant);
+  if (parts.time_constant) text += fmt::format(", λ {:.4g} s", v.time_constant);
   lines.push_back(text +
                   fmt::format("; ν {:.4g} m²/s at the typical shear rate {:.4g} 1/s", nu, rate));
   const double slow = shear_rate_at(law, law.nu_max(), true),

@@ -12,6 +12,29 @@ using Model = ViscosityScene::Model;
 constexpr double kSpan = 100.0;      // bounds over and under the reference, where none are given
 constexpr double kSlowest = 1e-290;  // a shear rate that is none, but may be divided by
 
+struct Row {
+  Model model;
+  const char* name;
+  ViscosityParts parts;
+};
+
+const Row kRows[] = {
+    {Model::Newtonian, "newtonian", {}},
+    {Model::Smagorinsky, "smagorinsky", {}},
+    {Model::PowerLaw, "power_law", {.varies = true, .consistency = true, .index = true}},
+    {Model::Carreau,
+     "carreau",
+     {.varies = true, .index = true, .time_constant = true, .bounds = true}},
+    {Model::Bingham, "bingham", {.varies = true, .consistency = true, .yield_stress = true}},
+    {Model::HerschelBulkley,
+     "herschel_bulkley",
+     {.varies = true, .consistency = true, .index = true, .yield_stress = true}},
+};
+
+const Row& row_of(Model model) {
+  return *std::ranges::find(kRows, model, &Row::model);
+}
+
 }  // namespace
 
 ViscosityLaw::ViscosityLaw(const FluidScene& fluid, double shear_rate)
@@ -27,7 +50,7 @@ ViscosityLaw::ViscosityLaw(const FluidScene& fluid, double shear_rate)
 }
 
 bool ViscosityLaw::newtonian() const {
-  return scene_.model == Model::Newtonian || scene_.model == Model::Smagorinsky;
+  return !parts_of(scene_.model).varies;
 }
 
 double ViscosityLaw::unbounded(double shear_rate) const {
@@ -61,27 +84,18 @@ double typical_shear_rate(const Scene& s) {
   return s.fluid.velocity_scale / (length > 0.0 ? length : s.box.size.head(d).minCoeff());
 }
 
+ViscosityParts parts_of(Model model) {
+  return row_of(model).parts;
+}
+
 std::vector<Model> known_viscosities() {
-  return {Model::Newtonian, Model::Smagorinsky, Model::PowerLaw,
-          Model::Carreau,   Model::Bingham,     Model::HerschelBulkley};
+  std::vector<Model> models;
+  for (const Row& row : kRows) models.push_back(row.model);
+  return models;
 }
 
 std::string name_of(Model model) {
-  switch (model) {
-    case Model::Newtonian:
-      return "newtonian";
-    case Model::Smagorinsky:
-      return "smagorinsky";
-    case Model::PowerLaw:
-      return "power_law";
-    case Model::Carreau:
-      return "carreau";
-    case Model::Bingham:
-      return "bingham";
-    case Model::HerschelBulkley:
-      return "herschel_bulkley";
-  }
-  return "";
+  return row_of(model).name;
 }
 
 }  // namespace lbm

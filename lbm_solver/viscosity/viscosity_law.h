@@ -52,6 +52,17 @@ class ViscosityLaw {
 /// over the box's smallest length where it has none of them.
 double typical_shear_rate(const Scene& scene);
 
+/// What a law is made of: whether the viscosity depends on the shear rate, and the keys of
+/// `fluid.viscosity` that it has beside nu_min, nu_max and shear_rate.
+struct ViscosityParts {
+  bool varies = false;
+  bool consistency = false, index = false;
+  bool yield_stress = false;  ///< and regularisation
+  bool time_constant = false;
+  bool bounds = false;  ///< nu_min and nu_max are parts of the law, and must be given
+};
+ViscosityParts parts_of(ViscosityScene::Model model);
+
 /// As a scene writes it, e.g. "power_law".
 std::string name_of(ViscosityScene::Model model);
 std::vector<ViscosityScene::Model> known_viscosities();

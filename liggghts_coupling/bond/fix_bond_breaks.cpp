@@ -3,7 +3,7 @@
 
 #include <comm.h>
 #include <error.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <force.h>
 #include <sys/stat.h>
 #include <update.h>

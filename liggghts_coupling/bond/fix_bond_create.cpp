@@ -4,7 +4,7 @@
 #include <comm.h>
 #include <error.h>
 #include <fix_contact_history.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <force.h>
 #include <modify.h>
 #include <pair_gran.h>

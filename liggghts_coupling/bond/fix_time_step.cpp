@@ -5,18 +5,16 @@
 #include <comm.h>
 #include <domain.h>
 #include <error.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <force.h>
 #include <update.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "liggghts_coupling/bond/arguments.h"
 #include "liggghts_coupling/bond/pair_property.h"
-#include "liggghts_coupling/bond/time_step_limits.h"
 
 namespace dem {
 
@@ -74,7 +72,8 @@ double FixTimeStep::rayleigh() const {
   return rayleigh_limit(all[0] / all[2], all[1] / all[2], *shear_modulus_, poisson_ratio_);
 }
 
-void FixTimeStep::init() {
+/// Every pair of types of which there are particles, with the stiffest springs.
+std::vector<StepCase> FixTimeStep::cases() {
   const auto values = [this](const char* name) { return pair_property(*lmp, name, style); };
   const double* const* contact = values("contactNormalStiffness");
   const double* const* shear = values("contactShearStiffness");
@@ -83,39 +82,41 @@ void FixTimeStep::init() {
   const double* const* bond_shear = values("bondShearStiffness");
   if (!contact || !shear || !damping || !bond || !bond_shear)
     error->fix_error(FLERR, this, "needs the properties of pair_style gran model bond/contact");
-  double critical = std::numeric_limits<double>::max();
-  std::string binding;
-  say(fmt::format("time step limits (before the factor lambda = {}):\n", lambda_));
+  std::vector<StepCase> all;
   for (int a = 1; a <= atom->ntypes; ++a)
     for (int b = a; b <= atom->ntypes; ++b) {
       const Lightest one = lightest(a), two = lightest(b);
       const Lightest& light = one.mass < two.mass ? one : two;
       if (light.mass == std::numeric_limits<double>::max()) continue;  // no particle of the type
-      const StepCase c{fmt::format("types {} and {}", a, b),
-                       light.mass,
-                       light.inertia,
-                       light.radius,
-                       std::max(contact[a - 1][b - 1], bond[a - 1][b - 1]),
-                       std::max(shear[a - 1][b - 1], bond_shear[a - 1][b - 1]),
-                       damping[a - 1][b - 1],
-                       domain->dimension == 3};
-      for (const StepLimit& limit : step_limits(c)) {
-        say(fmt::format("  {:14} {:28} {:.4e} s\n", c.what, limit.rule, limit.step));
-        const bool judged = limit.rule.find("Eq 12") != std::string::npos ||
-                            limit.rule.find("turning") != std::string::npos;
-        if (!judged || limit.step >= critical) continue;
-        critical = limit.step;
-        binding = c.what + ", " + limit.rule;
-      }
+      all.push_back({fmt::format("types {} and {}", a, b), light.mass, light.inertia, light.radius,
+                     std::max(contact[a - 1][b - 1], bond[a - 1][b - 1]),
+                     std::max(shear[a - 1][b - 1], bond_shear[a - 1][b - 1]), damping[a - 1][b - 1],
+                     domain->dimension == 3});
     }
-  if (shear_modulus_) {
-    const double limit = rayleigh();
-    say(fmt::format("  {:14} {:28} {:.4e} s\n", "material", "Rayleigh wave, Eq 9", limit));
-    if (limit < critical) {
-      critical = limit;
-      binding = "Rayleigh wave, Eq 9";
+  return all;
+}
+
+/// Prints every limit.
+FixTimeStep::Critical FixTimeStep::critical() {
+  const std::vector<StepCase> all = cases();
+  Critical critical{std::numeric_limits<double>::max(), {}};
+  say(fmt::format("time step limits (before the factor lambda = {}):\n", lambda_));
+  for (const StepCase& c : all)
+    for (const StepLimit& limit : step_limits(c)) {
+      say(fmt::format("  {:14} {:28} {:.4e} s\n", c.what, limit.rule, limit.step));
+      const bool judged = limit.rule.find("Eq 12") != std::string::npos ||
+                          limit.rule.find("turning") != std::string::npos;
+      if (judged && limit.step < critical.step) critical = {limit.step, c.what + ", " + limit.rule};
     }
-  }
+  if (!shear_modulus_) return critical;
+  const double limit = rayleigh();
+  say(fmt::format("  {:14} {:28} {:.4e} s\n", "material", "Rayleigh wave, Eq 9", limit));
+  if (limit < critical.step) critical = {limit, "Rayleigh wave, Eq 9"};
+  return critical;
+}
+
+void FixTimeStep::init() {
+  const auto [critical, binding] = this->critical();
   const double most = lambda_ * critical;
   if (interval_) {
     update->dt = *interval_ / std::ceil(*interval_ / most - 1e-9);

@@ -4,10 +4,14 @@
 #include <mpi.h>
 
 #include <optional>
+#include <string>
+#include <vector>
 // clang-format off
 #include <lammps.h>
 #include <fix.h>
 // clang-format on
+
+#include "liggghts_coupling/bond/time_step_limits.h"
 
 namespace dem {
 
@@ -31,6 +35,13 @@ class FixTimeStep final : public LAMMPS_NS::Fix {
   Lightest lightest(int type) const;
   void say(const std::string& text) const;
   double rayleigh() const;
+  /// The smallest limit that is judged, before the factor.
+  struct Critical {
+    double step;
+    std::string binding;
+  };
+  std::vector<StepCase> cases();
+  Critical critical();
 
   double lambda_ = 0.1;
   std::optional<double> interval_, shear_modulus_;

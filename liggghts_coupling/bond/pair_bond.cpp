@@ -21,7 +21,7 @@
 #include <pair_gran_base.h>
 // clang-format on
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

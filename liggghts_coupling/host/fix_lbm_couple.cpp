@@ -5,7 +5,7 @@
 #include <atom.h>
 #include <comm.h>
 #include <error.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <modify.h>
 #include <signal_handling.h>
 #include <update.h>
@@ -16,7 +16,7 @@
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple_arguments.h"
 #include "liggghts_coupling/host/script_checks.h"
-#include "liggghts_coupling/host/solid_hello.h"
+#include "liggghts_coupling/host/solid_handshake.h"
 #include "protocol/program/watch.h"
 
 namespace dem {
@@ -96,6 +96,7 @@ void FixLbmCouple::setup_pre_exchange() {
   if (clumps_.in_part(groupbit))
     fail("its group holds some spheres of clumps and leaves others out; give it all of them");
   checks.refuse_overlaps(groupbit, clumps_.carriers());
+  clumps_.refuse_wrong_weight();
 }
 
 /// The end of LIGGGHTS' set-up: of a run, or, within one, of `set_up_again`.
@@ -118,7 +119,7 @@ void FixLbmCouple::begin() {
   if (job.agreed) fail("was removed and made anew: keep the first one for all runs");
   const protocol::Hello mine = hello();
   if (*mine.particles > 0)
-    SolidHello(lmp, groupbit, coupling_->substeps(), clumps_).expect_motion();
+    SolidHandshake(lmp, groupbit, coupling_->substeps(), clumps_).expect_motion();
   step_ = update->ntimestep;
   time_step_ = update->dt;
   bonds_->first_step = static_cast<long>(step_ - mine.first_interval * coupling_->substeps());

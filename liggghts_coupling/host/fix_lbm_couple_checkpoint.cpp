@@ -2,7 +2,7 @@
 /// The solid's part of a checkpoint, and of what is kept at a fault.
 #include <atom.h>
 #include <comm.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <write_restart.h>
 
 #include <algorithm>

@@ -3,15 +3,13 @@
 #include <atom.h>
 #include <comm.h>
 #include <domain.h>
-#include <error.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <integrate.h>
 #include <modify.h>
 #include <neighbor.h>
 #include <update.h>
 
 #include <array>
-#include <memory>
 #include <numeric>
 #include <vector>
 
@@ -21,8 +19,7 @@
 #include "liggghts_coupling/host/fix_lbm_couple.h"
 #include "liggghts_coupling/host/rank_grid.h"
 #include "liggghts_coupling/host/script_checks.h"
-#include "liggghts_coupling/host/solid_hello.h"
-#include "protocol/transport/trace.h"
+#include "liggghts_coupling/host/solid_handshake.h"
 
 namespace dem {
 
@@ -62,7 +59,7 @@ protocol::Setting FixLbmCouple::setting() const {
 /// What the script is set up to do.
 protocol::Hello FixLbmCouple::hello() const {
   const protocol::Hello& fluid = Coupling::instance().session->fluid();
-  protocol::Hello hello = SolidHello(lmp, groupbit, coupling_->substeps(), clumps_).collect();
+  protocol::Hello hello = SolidHandshake(lmp, groupbit, coupling_->substeps(), clumps_).collect();
   if (hello.buoyancy != protocol::Buoyancy::BySolid)
     hello.buoyancy = fluid.buoyancy == protocol::Buoyancy::None ? protocol::Buoyancy::None
                                                                 : protocol::Buoyancy::ByFluid;
@@ -165,22 +162,6 @@ void FixLbmCouple::set_up_again() {
   neighbor->build();
   neighbor->ncalls = 0;
   update->integrate->setup_minimal(0);
-}
-
-void FixLbmCouple::begin_recording(const std::string& record) const {
-  Coupling& job = Coupling::instance();
-  const int rank = comm->me;
-  const std::string file = rank == 0 ? record : fmt::format("{}.{}", record, rank);
-  try {
-    auto writer =
-        std::make_unique<protocol::TraceWriter>(file, "solid", rank, job.channel->remote_size());
-    for (int r = 0; r < job.channel->remote_size(); ++r)  // came before this script was read
-      writer->record(protocol::Direction::Received, r, encode(job.session->fluid()));
-    job.channel = protocol::make_recording_channel(std::move(job.channel), std::move(writer));
-  } catch (const std::exception& e) {
-    error->one(FLERR, e.what());
-  }
-  job.session->use(*job.channel);
 }
 
 }  // namespace dem

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// What a script may do between two runs, and what not.
+/// What a script may do between two runs, and what not; the recording of all of them.
 #include <atom.h>
+#include <comm.h>
 #include <domain.h>
-#include <fmt/format.h>
+#include <error.h>
+#include <fmt/core.h>
 #include <signal_handling.h>
 #include <update.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
+#include "protocol/transport/recording.h"
 #include "protocol/wire/agreement.h"
 
 namespace dem {
@@ -59,6 +63,19 @@ void FixLbmCouple::post_run() {
     std::copy_n(atom->x[i], 3, held_[i] + kPlace);
     held_[i][kRadius] = atom->radius[i];
   }
+}
+
+void FixLbmCouple::begin_recording(const std::string& record) const {
+  Coupling& job = Coupling::instance();
+  const int rank = comm->me;
+  const std::string file = rank == 0 ? record : fmt::format("{}.{}", record, rank);
+  try {
+    const protocol::Bytes handshake = encode(job.session->fluid());  // came before the script
+    protocol::record_to(file, job.channel, "solid", rank, handshake);
+  } catch (const std::exception& e) {
+    error->one(FLERR, e.what());
+  }
+  job.session->use(*job.channel);
 }
 
 }  // namespace dem

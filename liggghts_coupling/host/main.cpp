@@ -39,7 +39,8 @@ Coupling& Coupling::instance() {
 
 namespace {
 
-constexpr double kHelloSeconds = 60.0;  // the fluid says hello as soon as it has read its scene
+constexpr double kHandshakeSeconds =
+    60.0;  // the fluid sends its handshake as soon as it has read its scene
 
 using Arguments = std::vector<std::string>;
 
@@ -201,7 +202,8 @@ void run(Arguments& arguments) {
     if (option(arguments, "-in", "-i").empty())
       arguments.insert(arguments.end(), {"-in", "in.liggghts"});
     check_script(arguments);
-    coupling.session = std::make_unique<protocol::SolidSession>(*coupling.channel, kHelloSeconds);
+    coupling.session =
+        std::make_unique<protocol::SolidSession>(*coupling.channel, kHandshakeSeconds);
     protocol::limit_waits(coupling.session->timeout());
     add_offered_variables(arguments, coupling.session->fluid());
   } else {

@@ -3,7 +3,7 @@
 
 #include <atom.h>
 #include <domain.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <modify.h>
 #include <update.h>
 

@@ -5,6 +5,7 @@
 #include <comm.h>
 #include <domain.h>
 #include <fix_property_atom.h>
+#include <fmt/format.h>
 #include <modify.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <string>
 
 #include "liggghts_coupling/host/script_checks.h"
+#include "protocol/wire/errors.h"
 #include "protocol/wire/overlap.h"
 
 namespace dem {
@@ -103,6 +105,43 @@ bool ScriptClumps::in_part(int groupbit) const {
     if (carrier[i] != protocol::kItself) found[(atom->mask[i] & groupbit) != 0] = 1;
   MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, world);
   return found[0] == 1 && found[1] == 1;
+}
+
+void ScriptClumps::refuse_wrong_weight() const {
+  if (modify->n_fixes_style("gravity") == 0) return;
+  for (std::size_t n = 0; n < rigid_.size(); ++n) expect_weight_of(n);
+}
+
+/// The weight is wrong as the mass is, and pulls at another place than the centre.
+void ScriptClumps::expect_weight_of(std::size_t number) const {
+  constexpr double kOff = 1e-3;  // of the mass, and of the clump's reach
+  const FixRigid& fix = *rigid_[number];
+  const int bodies = (fix.*Inside::count);
+  std::vector<double> sums(4 * static_cast<std::size_t>(bodies), 0.0), reach(bodies, 0.0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int b = (fix.*Inside::body_of)[i];
+    if (b < 0) continue;
+    double arm[3];
+    for (int k = 0; k < 3; ++k) arm[k] = atom->x[i][k] - (fix.*Inside::place)[b][k];
+    domain->minimum_image(arm);
+    sums[4 * b] += atom->rmass[i];
+    for (int k = 0; k < 3; ++k) sums[4 * b + 1 + k] += atom->rmass[i] * arm[k];
+    reach[b] = std::max(reach[b], std::hypot(arm[0], arm[1], arm[2]) + atom->radius[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 4 * bodies, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(MPI_IN_PLACE, reach.data(), bodies, MPI_DOUBLE, MPI_MAX, world);
+  for (int b = 0; b < bodies; ++b) {
+    const double mass = (fix.*Inside::mass)[b], *const sum = &sums[4 * b];
+    const double apart = std::hypot(sum[1], sum[2], sum[3]) / sum[0];
+    if (std::abs(sum[0] - mass) <= kOff * mass && apart <= kOff * reach[b]) continue;
+    throw protocol::ProgramError(
+        fmt::format("fix lbm/couple: fix gravity weighs the spheres of fix {} rigid, not its "
+                    "bodies: those of body {} have {:.6g} kg together, the body {:.6g} kg, and "
+                    "their centres of mass are {:.3g} m apart; give the spheres densities with "
+                    "which both agree",
+                    fix.id, b + 1, sum[0], mass, apart),
+        protocol::kBadInput);
+  }
 }
 
 std::vector<EngineClump> ScriptClumps::clumps() const {

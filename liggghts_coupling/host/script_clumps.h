@@ -36,6 +36,9 @@ class ScriptClumps : protected LAMMPS_NS::Pointers {
   const std::int64_t* carriers() const;
   /// Some of their spheres are in a group, some are not. Collective.
   bool in_part(int groupbit) const;
+  /// A body of fix rigid that has its mass from a file, while fix gravity weighs its spheres.
+  /// Collective. @throws protocol::ProgramError  exit code 2: the two differ
+  void refuse_wrong_weight() const;
   /// Those that this rank answers for.
   std::vector<protocol::EngineClump> clumps() const;
   /// Adds loads of all ranks' clumps.
@@ -43,6 +46,7 @@ class ScriptClumps : protected LAMMPS_NS::Pointers {
 
  private:
   void add_multisphere(std::vector<protocol::EngineClump>& clumps) const;
+  void expect_weight_of(std::size_t number) const;
   void add_rigid(std::size_t number, std::vector<protocol::EngineClump>& clumps) const;
   void push_rigid(std::size_t number, std::span<const protocol::Load> loads, bool to_bodies);
 

@@ -5,7 +5,7 @@
 #include <error.h>
 #include <fix_mesh_surface.h>
 #include <fix_wall_gran.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <modify.h>
 #include <primitive_wall.h>
 #include <tri_mesh.h>

@@ -33,7 +33,7 @@ int leave_after(const std::exception& error, const std::string& program, Channel
 
 /// The end of every program of a job, in place of MPI_Finalize: waits for the ranks of its own
 /// program, says farewell, waits for the partner's, and finalises MPI. No wait is longer than the
-/// limit of `limit_waits`, or a minute: see "The end of a job" in README.md. A partner that fails
+/// limit of `limit_waits`, or a minute: see "The end of a job" in WIRE.md. A partner that fails
 /// meanwhile, or stands still, ends the job.
 /// @param channel  null where there is no partner; null afterwards
 /// @param local    the ranks of this program; null where there was no `connect`

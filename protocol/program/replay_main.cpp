@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// `replay --as solid|fluid trace.h5` stands in for a program with what was recorded, and compares
 /// what the other one sends with the recording.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 
@@ -50,8 +50,8 @@ TraceComparison play_solid(Channel& channel, const Trace& trace, const Options& 
   return result;
 }
 
-/// The fluid's hello without the folder of the run that was recorded: a script must not write there
-/// again.
+/// The fluid's handshake without the folder of the run that was recorded: a script must not write
+/// there again.
 Hello hello_to_replay(const Trace& trace) {
   Hello hello = trace.hello(Role::Fluid);
   std::erase_if(hello.variables, [](const Variable& v) { return v.name == "out_folder"; });

@@ -2,7 +2,7 @@
 /// `trace info FILE` says what a recording holds; `trace diff A B` where two differ first; `trace
 /// cut FILE OUT --intervals N` keeps the beginning; `trace plot FILE` draws a particle's way and
 /// loads.
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

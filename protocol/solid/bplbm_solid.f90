@@ -6,8 +6,8 @@ module bplbm_solid
   implicit none
   private
   public :: bplbm_setup, bplbm_state, bplbm_shape, bplbm_load
-  public :: bplbm_connect, bplbm_error, bplbm_scene, bplbm_has, bplbm_text, bplbm_number, bplbm_agree, bplbm_exchange
-  public :: bplbm_send, bplbm_receive, bplbm_checkpoint, bplbm_goodbye, bplbm_fail, bplbm_communicator, bplbm_close
+  public :: bplbm_connect, bplbm_error, bplbm_scene, bplbm_has, bplbm_text, bplbm_number, bplbm_clump, bplbm_agree
+  public :: bplbm_exchange, bplbm_send, bplbm_receive, bplbm_checkpoint, bplbm_goodbye, bplbm_fail, bplbm_communicator, bplbm_close
 
   integer(c_int), parameter, public :: BPLBM_OK = 0, BPLBM_FAULT = 1, BPLBM_BAD_INPUT = 2, BPLBM_NUMERICS = 3
   integer(c_int32_t), parameter, public :: BPLBM_LAST = 1, BPLBM_STOP = 2, BPLBM_CHECKPOINTS = 4, BPLBM_WANT_BONDS = 8, &
@@ -68,6 +68,15 @@ module bplbm_solid
       type(c_ptr), value :: solid
       character(kind=c_char), intent(in) :: name(*)
       real(c_double), intent(inout) :: value
+    end function
+    integer(c_int) function bplbm_clump(solid, n, places, radii, density, carrier, centre, inertia) bind(c)
+      import
+      type(c_ptr), value :: solid
+      integer(c_int64_t), value :: n
+      real(c_double), intent(in) :: places(3, *), radii(*)
+      real(c_double), value :: density
+      type(bplbm_shape), intent(inout) :: carrier
+      real(c_double), intent(inout) :: centre(3), inertia(6)
     end function
     integer(c_int) function bplbm_agree(solid, setup) bind(c)
       import

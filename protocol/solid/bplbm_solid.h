@@ -133,6 +133,17 @@ const char* bplbm_variable(const bplbm_solid* solid, const char* name);
 /* The same as a number. A variable that is missing is a failure. */
 int bplbm_number(bplbm_solid* solid, const char* name, double* value);
 
+/* What a clump's carrier is: radius, mass, inertia and volume of the union of its spheres (discs in
+ * two dimensions), which may overlap. The id is 0: set it.
+ * n        spheres
+ * places   [n][3], centres about any point [m]; z does not count in two dimensions
+ * radii    [n] [m]
+ * density  [kg/m^3]
+ * centre   null, or set to the centre of mass, about the same point: subtract it from the places
+ * inertia  null, or set to the tensor about the centre: xx, yy, zz, yz, zx, xy [kg m^2] */
+int bplbm_clump(bplbm_solid* solid, int64_t n, const double* places, const double* radii,
+                double density, bplbm_shape* carrier, double centre[3], double inertia[6]);
+
 /* Tells the fluid what this program computes with. Both compare everything, and fail with every
  * disagreement in the sentence. */
 int bplbm_agree(bplbm_solid* solid, const bplbm_setup* setup);
@@ -151,9 +162,10 @@ int bplbm_exchange(bplbm_solid* solid, int64_t n, const bplbm_state* states,
 int bplbm_send(bplbm_solid* solid, int64_t n, const bplbm_state* states, const bplbm_shape* shapes);
 int bplbm_receive(bplbm_solid* solid, bplbm_load* loads, uint32_t* asked);
 
-/* Writes this program's part of a checkpoint, where the last loads asked for it: the pieces of all ranks one after the other, in the
- * order of ranks, whole or not at all. On a restart setup.first_interval is above 0, and the
- * variable "restart_file" names the file. */
+/* Writes this program's part of a checkpoint, where the last loads asked for it: the pieces of all
+ * ranks one after the other, in the order of ranks, whole or not at all. It is of the beginning of
+ * the next interval: what that brings has come. On a restart setup.first_interval is above 0, and
+ * the variable "restart_file" names the file. */
 int bplbm_checkpoint(bplbm_solid* solid, const void* bytes, int64_t size);
 
 /* What there is to say of this rank, with the next states: particles that have left through a side

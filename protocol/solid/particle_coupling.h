@@ -47,7 +47,7 @@ std::vector<Ball> balls_of(const EngineParticles& particles, int group);
 
 /// How far the conversation has come, for the program around the engine.
 struct Progress {
-  bool agreed = false;  ///< hellos exchanged: the fluid waits for states
+  bool agreed = false;  ///< handshakes exchanged: the fluid waits for states
   bool over = false;    ///< the last states are sent
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What both sides agree on, as the C interface has it and as a hello.
+/// What both sides agree on, as the C interface has it and as a handshake.
 #pragma once
 
 #include "protocol/solid/bplbm_solid.h"

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "protocol/transport/recording.h"
 #include "protocol/wire/text.h"
 
 namespace protocol {
@@ -147,7 +148,7 @@ Hello Trace::hello(Role role) const {
       const auto hello = decode<Hello>(frame(row));
       if (hello.role == role) return hello;
     }
-  throw std::runtime_error("the recording ended before both sides had said hello");
+  throw std::runtime_error("the recording ended before the handshake of both sides");
 }
 
 namespace {
@@ -215,7 +216,7 @@ class ReplayChannel final : public Channel {
 
   void send(int remote, Bytes frame, const Wait& wait) override {
     const FrameRow& row = next(sent_[remote], remote, wait);
-    if (row.kind == Kind::Hello || frame == trace_->frame(row)) return;  // hellos hold versions
+    if (row.kind == Kind::Hello || frame == trace_->frame(row)) return;  // handshakes hold versions
     throw ProtocolError(
         format("interval {}: the {} message sent to {} differs from the "
                "recorded one; `trace diff` names the first difference",
@@ -247,6 +248,15 @@ class ReplayChannel final : public Channel {
 std::unique_ptr<Channel> make_recording_channel(std::unique_ptr<Channel> inner,
                                                 std::unique_ptr<TraceWriter> writer) {
   return std::make_unique<RecordingChannel>(std::move(inner), std::move(writer));
+}
+
+void record_to(const std::string& file, std::unique_ptr<Channel>& channel,
+               const std::string& recorder, int local_rank, const Bytes& received) {
+  const int remotes = channel->remote_size();
+  auto writer = std::make_unique<TraceWriter>(file, recorder, local_rank, remotes);
+  for (int r = 0; r < remotes && !received.empty(); ++r)
+    writer->record(Direction::Received, r, received);
+  channel = make_recording_channel(std::move(channel), std::move(writer));
 }
 
 std::unique_ptr<Channel> make_replay_channel(std::shared_ptr<const Trace> trace) {

@@ -53,7 +53,7 @@ class Trace {
   std::span<const Shape> shapes(const FrameRow& row) const;
   std::span<const Load> loads(const FrameRow& row) const;
 
-  /// The hello of a side. @throws std::runtime_error where the recording ended before it
+  /// The handshake of a side. @throws std::runtime_error where the recording ended before it
   Hello hello(Role role) const;
 
  private:

@@ -80,11 +80,11 @@ Handle row_type<std::byte>() {
 }
 
 template <class Row>
-Table<Row> Table<Row>::create(hid_t file, const std::string& name) {
-  const hsize_t none = 0, unlimited = H5S_UNLIMITED, chunk = 4096;
+Table<Row> Table<Row>::create(hid_t file, const std::string& name, std::uint64_t chunk) {
+  const hsize_t none = 0, unlimited = H5S_UNLIMITED, rows = chunk;
   const Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose, "make a space");
   const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make properties");
-  check(H5Pset_chunk(properties, 1, &chunk), "set a chunk size");
+  check(H5Pset_chunk(properties, 1, &rows), "set a chunk size");
   Handle type = row_type<Row>();
   Handle data(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
               H5Dclose, "create table " + name);

@@ -36,7 +36,8 @@ hdf5::Handle row_type();
 template <class Row>
 class Table {
  public:
-  static Table create(hid_t file, const std::string& name);
+  /// @param chunk  rows that take their place in the file together
+  static Table create(hid_t file, const std::string& name, std::uint64_t chunk = 4096);
   static Table open(hid_t file, const std::string& name);
 
   void append(std::span<const Row> rows);  ///< buffered

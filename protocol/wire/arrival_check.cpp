@@ -7,9 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "protocol/wire/errors.h"
 #include "protocol/wire/overlap.h"
-#include "protocol/wire/text.h"
+#include "protocol/wire/refusal.h"
 
 namespace protocol {
 namespace {
@@ -17,11 +16,6 @@ namespace {
 constexpr double kRoundOff = 1e-9;  // of numbers that come through a script's decimal text
 constexpr double kSlack = 1e-6;     // of ranges and masses
 constexpr double kGrowth = 0.1;     // of a radius between two exchanges
-
-template <class... Args>
-[[noreturn]] void refuse(Pattern<sizeof...(Args)> pattern, const Args&... args) {
-  throw BadMessage(format(pattern, args...), kBadInput);
-}
 
 std::string text(const Vec3& v) {
   return format("({:.6g}, {:.6g}, {:.6g})", v[0], v[1], v[2]);

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "protocol/wire/ball_union.h"
-#include "protocol/wire/errors.h"
-#include "protocol/wire/text.h"
+#include "protocol/wire/refusal.h"
 
 namespace protocol {
 namespace {
@@ -16,12 +15,7 @@ namespace {
 /// hundredth of what it displaces, which is what the lattice itself is wrong by at eight cells a
 /// sphere.
 constexpr double kVolume = 0.01;
-constexpr double kSlack = 1e-6;
-
-template <class... Args>
-[[noreturn]] void refuse(Pattern<sizeof...(Args)> pattern, const Args&... args) {
-  throw BadMessage(format(pattern, args...), kBadInput);
-}
+constexpr double kClumpSlack = 1e-6;
 
 }  // namespace
 
@@ -68,7 +62,7 @@ void ClumpCheck::volume(std::span<const Particle> particles, const Clump& clump,
   for (const std::size_t i : clump.spheres)
     balls.push_back({0, arm(particles[i].state, state), particles[i].shape.radius});
   const double together = moments_of_union(balls, fluid_.dimension, fluid_.depth).volume;
-  const double tolerance = balls.size() == 1 ? kSlack : kVolume;
+  const double tolerance = balls.size() == 1 ? kClumpSlack : kVolume;
   if (std::abs(shape.volume - together) <= tolerance * together) return;
   refuse(
       "clump {}: volume {:.6g} m³ at interval {}, its {} spheres fill {:.6g} m³ together: it would "
@@ -112,7 +106,7 @@ void ClumpCheck::places(std::span<const Particle> particles, std::int64_t interv
     for (const std::size_t i : clump.spheres) {
       const Vec3 a = arm(particles[i].state, state);
       const double out = std::hypot(a[0], a[1], a[2]) + particles[i].shape.radius;
-      if (out <= shape.radius * (1.0 + kSlack)) continue;
+      if (out <= shape.radius * (1.0 + kClumpSlack)) continue;
       refuse(
           "clump {}: its sphere {} reaches {:.9g} m from its centre at interval {}, its radius is "
           "{:.9g} m: that of the ball about its centre that holds all its spheres",

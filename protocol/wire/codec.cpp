@@ -204,7 +204,7 @@ Message read(Kind kind, const Bytes& frame) {
 const char* name(Kind kind) {
   switch (kind) {
     case Kind::Hello:
-      return "hello";
+      return "handshake";
     case Kind::Answer:
       return "answer";
     case Kind::States:

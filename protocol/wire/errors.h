@@ -56,7 +56,7 @@ class PeerLeft : public ProtocolError {
   using ProtocolError::ProtocolError;
 };
 
-/// The two hellos contradict each other.
+/// The two handshakes contradict each other.
 class Refusal : public ProtocolError {
  public:
   explicit Refusal(std::vector<std::string> reasons)

@@ -36,14 +36,15 @@ FluidSession::FluidSession(Channel& channel, Hello hello, double timeout)
 const Hello& FluidSession::agree() {
   const Stopwatch watch(waited_);
   for (int r = 0; r < channel_.remote_size(); ++r) {
-    const Bytes frame = channel_.receive(r, {timeout_, "its hello (end of its script's set-up)"});
+    const Bytes frame =
+        channel_.receive(r, {timeout_, "its handshake (end of its script's set-up)"});
     if (kind_of(frame) == Kind::Goodbye)
       throw PeerLeft(format("{} left before the coupling began: {}", channel_.remote_name(),
                             decode<Goodbye>(frame).reason));
     const Hello hello = decode<Hello>(frame);
     if (r == 0) partner_ = hello;
   }
-  settle(channel_, mine_, partner_, {timeout_, "its answer to our hello"});
+  settle(channel_, mine_, partner_, {timeout_, "its answer to our handshake"});
   return partner_;
 }
 
@@ -166,31 +167,38 @@ void FluidSession::check_states(std::span<const Particle> before,
   if (!told.empty()) check_.overlaps(arrival_.particles, is_new, is_clump, next_interval_);
 }
 
-void FluidSession::merge(const std::vector<StateBatch>& batches) {
-  arrival_.head = batches.front().head;
-  for (const StateBatch& batch : batches) arrival_.head.flags |= batch.head.flags & kStopWished;
-  arrival_.goodbye.reset();
-  merge_reports(batches);
-  if (merge_as_before(batches)) return;
-  const auto told = learn_shapes(batches);
-  struct Origin {
-    std::int64_t id;
-    std::size_t rank, record;
-  };
+namespace {
+
+/// Where a state stands in the batches.
+struct Origin {
+  std::int64_t id;
+  std::size_t rank, record;
+};
+
+/// Of all states, by id.
+std::vector<Origin> origins_of(const std::vector<StateBatch>& batches) {
   std::vector<Origin> origins;
-  before_.assign(batches.size(), {});
   for (std::size_t r = 0; r < batches.size(); ++r)
-    for (std::size_t i = 0; i < batches[r].states.size(); ++i) {
+    for (std::size_t i = 0; i < batches[r].states.size(); ++i)
       origins.push_back({batches[r].states[i].id, r, i});
-      before_[r].push_back(batches[r].states[i].id);
-    }
   std::sort(origins.begin(), origins.end(),
             [](const Origin& a, const Origin& b) { return a.id < b.id; });
+  return origins;
+}
+
+}  // namespace
+
+/// The particles of an interval in which others came than before, or with other shapes.
+void FluidSession::merge_anew(const std::vector<StateBatch>& batches) {
+  const auto told = learn_shapes(batches);
+  before_.assign(batches.size(), {});
+  for (std::size_t r = 0; r < batches.size(); ++r)
+    for (const State& state : batches[r].states) before_[r].push_back(state.id);
   const std::vector<Particle> last = std::exchange(arrival_.particles, {});
   ids_.clear();
   for (std::size_t r = 0; r < batches.size(); ++r) order_[r].resize(batches[r].states.size());
   std::unordered_map<std::int64_t, Shape> present;
-  for (const Origin& o : origins) {
+  for (const Origin& o : origins_of(batches)) {
     const auto shape = shapes_.find(o.id);
     if (shape == shapes_.end())
       throw BadMessage(
@@ -213,6 +221,14 @@ void FluidSession::merge(const std::vector<StateBatch>& batches) {
                        kBadInput);
   shapes_ = std::move(present);  // a particle that vanished must introduce itself again
   check_states(last, told);
+}
+
+void FluidSession::merge(const std::vector<StateBatch>& batches) {
+  arrival_.head = batches.front().head;
+  for (const StateBatch& batch : batches) arrival_.head.flags |= batch.head.flags & kStopWished;
+  arrival_.goodbye.reset();
+  merge_reports(batches);
+  if (!merge_as_before(batches)) merge_anew(batches);
 }
 
 void FluidSession::answer(std::span<const Load> loads, std::uint32_t flags) {

@@ -40,7 +40,7 @@ struct Variable {
 enum class SideWall : std::uint8_t { None = 0, Whole = 1, Partly = 2 };
 using SideWalls = std::array<SideWall, 6>;  ///< x low, x high, y low, y high, z low, z high
 
-/// Everything that both sides must agree on before the first step.
+/// The handshake: everything that both sides must agree on before the first step.
 struct Hello {
   std::uint32_t version = kProtocolVersion;
   Role role = Role::Fluid;
@@ -69,7 +69,7 @@ struct Hello {
   std::vector<Variable> variables;  ///< fluid only: offered to the solid's script
 };
 
-/// The verdict on the partner's hello. A refusal lists every disagreement.
+/// The verdict on the partner's handshake. A refusal lists every disagreement.
 struct Answer {
   bool accept = true;
   std::vector<std::string> reasons;

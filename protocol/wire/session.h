@@ -2,8 +2,8 @@
 /// The order of messages, from both sides. Any number of ranks a side; no collectives.
 ///
 ///   fluid rank                                solid rank
-///   Hello          ──── to every rank ────►   takes the offered variables, runs its script
-///   checks         ◄─── Hello ────────────
+///   handshake      ──── to every rank ────►   takes the offered variables, runs its script
+///   checks         ◄─── handshake ────────
 ///   Answer         ◄──────────────────────►   Answer           (every reason of both, to both)
 ///   advances       ◄─── States(k) ────────    x, v, ω at t_k
 ///   Loads(k)       ────────────────────────►  substeps to t_{k+1}
@@ -35,7 +35,7 @@ class FluidSession {
   /// @param timeout  longest wait for the partner [s]
   FluidSession(Channel& channel, Hello hello, double timeout);
 
-  /// Waits for the solid's hello and settles. @return the hello of solid rank 0
+  /// Waits for the solid's handshake and settles. @return that of solid rank 0
   /// @throws Refusal, PeerFault, Timeout, BadMessage
   const Hello& agree();
 
@@ -55,6 +55,7 @@ class FluidSession {
   void merge(const std::vector<StateBatch>& batches);
   void merge_reports(const std::vector<StateBatch>& batches);
   bool merge_as_before(const std::vector<StateBatch>& batches);
+  void merge_anew(const std::vector<StateBatch>& batches);
   void check_states(std::span<const Particle> before, std::span<const std::int64_t> told);
 
   Channel& channel_;
@@ -73,16 +74,16 @@ class FluidSession {
 
 class SolidSession {
  public:
-  /// Waits for the hello of every fluid rank. `channel` must outlive the session.
+  /// Waits for the handshake of every fluid rank. `channel` must outlive the session.
   /// @param timeout  longest wait [s]; the fluid's `coupling_timeout` where it offers one
   SolidSession(Channel& channel, double timeout);
 
-  /// Hello of fluid rank 0; its variables are for the script.
+  /// Handshake of fluid rank 0; its variables are for the script.
   const Hello& fluid() const { return fluid_.front(); }
 
   double timeout() const { return timeout_; }
   void set_timeout(double seconds) { timeout_ = seconds; }
-  /// What the solid computes with now, for the next states; until then what it said in its hello.
+  /// What the solid computes with now, for the next states; until then what its handshake said.
   void set(const Setting& now) { setting_ = now; }
   /// Goes on over another channel to the same partner, e.g. a recording one.
   void use(Channel& channel) { channel_ = &channel; }

@@ -40,7 +40,7 @@ SolidSession::SolidSession(Channel& channel, double timeout)
       sent_(channel.remote_size()) {
   const Stopwatch watch(waited_);
   for (int r = 0; r < channel_->remote_size(); ++r) {
-    fluid_.push_back(decode<Hello>(channel_->receive(r, {timeout_, "its hello"})));
+    fluid_.push_back(decode<Hello>(channel_->receive(r, {timeout_, "its handshake"})));
     timeout_ = timeout_of(fluid_.back(), timeout_);
   }
 }
@@ -48,9 +48,9 @@ SolidSession::SolidSession(Channel& channel, double timeout)
 void SolidSession::agree(const Hello& hello) {
   const Stopwatch watch(waited_);
   for (int r = 0; r < channel_->remote_size(); ++r)
-    channel_->send(r, encode(hello), {timeout_, "it to take our hello"});
+    channel_->send(r, encode(hello), {timeout_, "it to take our handshake"});
   setting_ = {hello.step, hello.box_lo, hello.box_hi};
-  settle(*channel_, fluid_.front(), hello, {timeout_, "its answer to our hello"});
+  settle(*channel_, fluid_.front(), hello, {timeout_, "its answer to our handshake"});
 }
 
 void SolidSession::send(const StepHeader& head, std::span<const State> states,

@@ -4,129 +4,21 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <map>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "tests/support/coupled_job.h"
+#include "tests/support/clump_job.h"
 
 namespace {
 
+using test::Clumps;
+using test::heavy;
 using test::JobResult;
 using test::kLbm;
-using test::kLiggghts;
+using test::kRigid;
 using test::mpirun;
-
-constexpr const char* kScene = R"(title = "clump"
-[box]
-size = [0.012, 0.012, 0.018]
-[fluid]
-density = 1000.0
-kinematic_viscosity = 1e-5
-gravity = [0.0, 0.0, -9.81]
-velocity_scale = 0.1
-[particles]
-diameter = 0.003
-density = 1000.0
-contact_stiffness = 1.0e3
-[numerics]
-cell = 0.0005
-[coupling]
-timeout = 30.0
-[output]
-probe_every = 0.005
-[run]
-end_time = 0.05
-)";
-
-constexpr const char* kScript = R"(atom_style granular
-atom_modify map array sort 0 0
-boundary ${boundary_x} ${boundary_y} ${boundary_z}
-newton off
-communicate single vel yes
-processors PROCESSORS
-units si
-region domain block ${x_lo} ${x_hi} ${y_lo} ${y_hi} ${z_lo} ${z_hi} units box
-if "${restart} == 1" then "read_restart ${restart_file}" else "create_box 1 domain"
-neighbor 0.0005 bin
-neigh_modify delay 0
-fix m1 all property/global youngsModulus peratomtype 5.e6
-fix m2 all property/global poissonsRatio peratomtype 0.45
-fix m3 all property/global coefficientRestitution peratomtypepair 1 0.3
-fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
-pair_style gran model hertz tangential history
-pair_coeff * *
-timestep ${solid_step}
-fix x all wall/gran model hertz tangential history primitive type 1 xplane ${x_lo}
-fix X all wall/gran model hertz tangential history primitive type 1 xplane ${x_hi}
-fix y all wall/gran model hertz tangential history primitive type 1 yplane ${y_lo}
-fix Y all wall/gran model hertz tangential history primitive type 1 yplane ${y_hi}
-fix z all wall/gran model hertz tangential history primitive type 1 zplane ${z_lo}
-fix Z all wall/gran model hertz tangential history primitive type 1 zplane ${z_hi}
-BODIES
-if "${restart} == 0" then "run 1"
-fix weight all gravity ${gravity} vector 0.0 0.0 -1.0
-fix fluid all lbm/couple every ${substeps}
-run ${solid_steps_total}
-)";
-
-/// Two spheres 1 mm apart, one body of fix multisphere.
-std::string multisphere(const std::string& density, const std::string& velocity = "0. 0. 0.") {
-  return "fix one all particletemplate/multisphere 15485863 atom_type 1 density constant " +
-         density +
-         " nspheres 2 ntry 1000000 spheres file two.txt scale 0.001 type 1\n"
-         "fix all_of all particledistribution/discrete 32452843 1 one 1.0\n"
-         "region middle block 0.0055 0.0065 0.0055 0.0065 0.0105 0.0115 units box\n"
-         "if \"${restart} == 0\" then \"fix put all insert/pack seed 32452867 distributiontemplate "
-         "all_of insert_every once overlapcheck yes all_in no vel constant " +
-         velocity +
-         " region middle particles_in_region 1\"\n"
-         "fix move all multisphere";
-}
-
-class Clumps : public testing::Test {
- protected:
-  Clumps() { folder_.write("two.txt", "-0.5 0 0 1.5\n0.5 0 0 1.5\n"); }
-
-  JobResult run(const std::string& bodies, const std::string& scene = kScene, int fluids = 1,
-                int solids = 1, const std::string& options = "--out out") {
-    return run_script(test::replaced(kScript, "BODIES", bodies), scene, fluids, solids, options);
-  }
-  JobResult run_script(const std::string& script, const std::string& scene, int fluids = 1,
-                       int solids = 1, const std::string& options = "--out out",
-                       double limit = 100.0) {
-    folder_.write("scene.toml", scene);
-    folder_.write("in.liggghts",
-                  test::replaced(script, "PROCESSORS", solids == 1 ? "1 1 1" : "1 1 2"));
-    return test::run(mpirun({kLbm + " --progress none " + options, fluids},
-                            {kLiggghts + " -in in.liggghts", solids}),
-                     folder_.path(), limit);
-  }
-
-  using Row = std::array<double, 17>;  // of probes.csv in three dimensions
-  /// Rows of a particle, of the clump where the id is below −1.
-  std::vector<Row> rows(const std::string& out, bool clump) const {
-    std::ifstream file(folder_.path() + "/" + out + "/probes.csv");
-    std::vector<Row> all;
-    std::string line, number;
-    std::getline(file, line);
-    while (std::getline(file, line)) {
-      std::istringstream numbers(line);
-      Row row{};
-      for (double& value : row) {
-        std::getline(numbers, number, ',');
-        value = std::stod(number);
-      }
-      if ((row[1] < -1.0) == clump) all.push_back(row);
-    }
-    return all;
-  }
-
-  test::TemporaryFolder folder_;
-};
+using test::multisphere;
 
 TEST_F(Clumps, OfMultisphereThatAreNeutralStayWhereTheyAre) {
   // Its density is the fluid's, and its volume that of its template: weight and buoyancy are equal
@@ -141,8 +33,8 @@ TEST_F(Clumps, OfMultisphereThatAreNeutralStayWhereTheyAre) {
 }
 
 TEST_F(Clumps, Slow_OfMultisphereThatAreNeutralStayWhereTheyAreForASecond) {
-  const std::string scene = test::replaced(kScene, "end_time = 0.05", "end_time = 1.0");
-  const std::string script = test::replaced(kScript, "BODIES", multisphere("1000"));
+  const std::string scene = test::replaced(test::kClumpScene, "end_time = 0.05", "end_time = 1.0");
+  const std::string script = test::replaced(test::kClumpScript, "BODIES", multisphere("1000"));
   test::expect_end(run_script(script, scene, 1, 1, "--out out", 550.0), 550.0, 0, {});
   const auto path = rows("out", true);
   ASSERT_GT(path.size(), 100U);
@@ -152,11 +44,6 @@ TEST_F(Clumps, Slow_OfMultisphereThatAreNeutralStayWhereTheyAreForASecond) {
       off = std::max(off, std::abs(row[axis] - path.front()[axis]));
   std::printf("a neutral clump within %.2g of its spheres' diameter\n", off / 0.003);
   EXPECT_LT(off, 1e-6 * 0.003);
-}
-
-std::string heavy(double density) {
-  return test::replaced(kScene, "density = 1000.0\ncontact",
-                        "density = " + std::to_string(density) + "\ncontact");
 }
 
 /// Rows of the clump of two runs are equal to round-off, summed in another order.
@@ -180,13 +67,6 @@ TEST_F(Clumps, Slow_OfMultisphereFallAlikeOnAnyNumberOfRanksOfTheFluid) {
   EXPECT_GT(one.front()[4], 0.0095);
   EXPECT_LT(one.back()[4], 0.0088);
 }
-
-/// Two spheres that overlap, joined by fix rigid, which counts both whole: their density is that of
-/// the union, 20.944 mm³, over the sum, 28.274 mm³.
-const std::string kRigid =
-    "if \"${restart} == 0\" then \"create_atoms 1 single 0.0055 0.006 0.011 units box\" "
-    "\"create_atoms 1 single 0.0065 0.006 0.011 units box\" \"set type 1 diameter 0.003 density "
-    "1851.86\"\nneigh_modify exclude group all all\nfix move all rigid single";
 
 TEST_F(Clumps, Slow_OfRigidFallAlikeOnAnyNumberOfRanks) {
   const std::string scene =
@@ -245,45 +125,13 @@ TEST_F(Clumps, TakeTheImpulseOfTheirLoads) {
   expect_impulse(rows("of_rigid", true), 1111.12 * 2.0 * 1.41371669e-8, 1e-6, 2);
 }
 
-/// I ΔΩ = Σ T M about y, about which bodies of revolution turn that fall with their axis in the
-/// plane of x and z: on any number of intervals, as above.
-void expect_turn(const std::vector<std::array<double, 17>>& path, double inertia, double off) {
-  ASSERT_GT(path.size(), 20U);
-  const double interval = path[1][0] - path[0][0];
-  double largest = 0.0, fastest = 0.0;
-  for (const auto& row : path) {
-    largest = std::max(largest, std::abs(row[15]));
-    fastest = std::max(fastest, std::abs(row[9]));
-  }
-  for (std::size_t k = 3; k < path.size(); ++k)
-    EXPECT_NEAR(inertia * (path[k][9] - path[k - 1][9]), interval * path[k - 1][15],
-                off * interval * largest)
-        << "interval " << k;
-  EXPECT_GT(fastest, 0.1);  // rad/s: there is a turn to speak of
-}
-
-TEST_F(Clumps, TurnByTheTorqueOfTheirLoads) {
-  // A larger and a smaller sphere, side by side: the fluid holds the smaller one back.
-  std::string scene = test::replaced(heavy(2000), "probe_every = 0.005\n", "");
-  scene = test::replaced(scene, "end_time = 0.05", "end_time = 0.02");
-  scene = test::replaced(scene, "diameter = 0.003", "diameter = [0.0018, 0.003]");
-  const auto about_y = [](double a, double b, double apart, double density) {
-    const double m = 4.0 / 3.0 * std::numbers::pi * density, ma = m * a * a * a, mb = m * b * b * b;
-    return 0.4 * (ma * a * a + mb * b * b) + ma * mb / (ma + mb) * apart * apart;
-  };
-  // They touch, so that no lens is counted twice, but for LIGGGHTS' samples (0.3 % of the volume).
-  folder_.write("two.txt", "-0.75 0 0 1.5\n1.65 0 0 0.9\n");
-  test::expect_end(run(multisphere("2000"), scene, 1, 1, "--out of_multisphere"), 100.0, 0, {});
-  expect_turn(rows("of_multisphere", true), about_y(1.5e-3, 0.9e-3, 2.4e-3, 2000.0), 0.01);
-}
-
 // Through the open side below: one clump of two spheres, which counts once, side by side and one
 // above the other, where the upper one is no grain of its own when the lower one has left.
 TEST_F(Clumps, ThatLeaveAnOpenBoxCountOnce) {
   const std::string scene = test::replaced(heavy(2500), "end_time = 0.05", "end_time = 0.04") +
                             "[[boundary]]\nside = \"back\"\nkind = \"pressure\"\n";
   const std::string in_box = test::replaced(
-      test::replaced(kScript, "BODIES", multisphere("2500", "0. 0. -0.15")),
+      test::replaced(test::kClumpScript, "BODIES", multisphere("2500", "0. 0. -0.15")),
       "fix z all wall/gran model hertz tangential history primitive type 1 zplane ${z_lo}\n",
       "thermo_modify lost ignore\n");
   const std::string script = test::replaced(in_box, "0.0105 0.0115", "0.0015 0.0025");

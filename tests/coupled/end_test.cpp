@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-/// The end of a job, as protocol/README.md has it: whoever leaves, at whatever stage and however,
+/// The end of a job, as protocol/WIRE.md has it: whoever leaves, at whatever stage and however,
 /// the other side ends in time and says why.
 #include <gtest/gtest.h>
 
@@ -53,8 +53,8 @@ struct Stage {
 };
 
 const std::vector<Stage> kStages{
-    {"connected", "its hello", "", 1},
-    {"hello", "its answer to our hello", "", 1},
+    {"connected", "its handshake", "", 1},
+    {"hello", "its answer to our handshake", "", 1},
     {"agreed", "the states of interval 0", "", 1},
     {"states", "the states of interval 1", "", 1},
     {"running", "the states of interval 3", "", 1},
@@ -80,7 +80,7 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
   std::vector<std::pair<const Stage*, std::future<JobResult>>> jobs;
   for (const Stage& stage : kStages) {
     if (peer != kPeer && (stage.name == "hello" || stage.name == "version"))
-      continue;  // Python's and C's interfaces say their hello and their answer at once
+      continue;  // Python's and C's interfaces send their handshake and their answer at once
     jobs.emplace_back(&stage, std::async(std::launch::async, [&stage, &peer = peer, &how = how] {
       const Scene scene;
       return test::run(scene.job(peer + stage.name + " " + how), scene.folder(), 30.0);
@@ -130,6 +130,8 @@ TEST(MisuseInC, IsNamedAtOnce) {
       {"send", 2, "bplbm_send: these states are sent; call bplbm_receive"},
       {"goodbye", 2, "bplbm_exchange: bplbm_goodbye was called"},
       {"checkpoint", 2, "bplbm_checkpoint: the last loads did not ask for one"},
+      {"clump", 2, "bplbm_clump: sphere 2 is at (0, 0, 0) m with a radius of -1 m"},
+      {"no_clump", 2, "bplbm_clump: give places and radii of at least one sphere"},
       {"code", 1, "has had enough"},
       {"connect", 2, "bplbm_connect: this process is connected already"},
   };
@@ -180,7 +182,7 @@ TEST(LeavingFluid, EndsLiggghts) {
   const auto job =
       test::run(mpirun({test::kBin + "/scripted_peer fluid leave"}, {kLiggghts + " -screen none"}),
                 scene.folder(), 30.0);
-  expect_end(job, 1, {"liggghts | error | fluid rank 0 left without its hello"});
+  expect_end(job, 1, {"liggghts | error | fluid rank 0 left without its handshake"});
 }
 
 TEST(Disagreement, OfARecordingEndsBoth) {
@@ -285,7 +287,7 @@ TEST(EndlessScript, EndsWithTheTimeOut) {
   const auto job =
       test::run("taskset -c 0 sh -c '" + scene.job(kLiggghts + " -screen none -log none") + "'",
                 scene.folder(), 30.0);
-  expect_end(job, 1, {"no answer from solid rank 0 for 2 s while waiting for its hello"});
+  expect_end(job, 1, {"no answer from solid rank 0 for 2 s while waiting for its handshake"});
   // start, time-out, a second, farewell and the end by mpirun
   EXPECT_LT(job.seconds, (1.5 + kTimeout + 1.0 + 3.0 + 2.5) * BPLBM_PATIENCE) << job.output;
 }

@@ -73,7 +73,8 @@ TEST_P(EngineOfClumps, MovesThemAsOneBody) {
   judge("clump");
   judge("clump --fluid-ranks 2");
 }
-INSTANTIATE_TEST_SUITE_P(All, EngineOfClumps, testing::Values("liggghts", "reference", "clumps"),
+INSTANTIATE_TEST_SUITE_P(All, EngineOfClumps,
+                         testing::Values("liggghts", "reference", "clumps", "yade"),
                          [](const auto& info) { return info.param; });
 
 // ---- the judge ----------------------------------------------------------------------------------

@@ -13,9 +13,11 @@ namespace {
 
 using namespace protocol;
 
+constexpr std::uint64_t kChunk = 16;  // a recording's would make each file a megabyte
+
 template <class Row>
 void fill(hid_t file, const char* name, std::size_t rows) {
-  auto table = Table<Row>::create(file, name);
+  auto table = Table<Row>::create(file, name, kChunk);
   const std::vector<Row> all(rows);
   if (rows) table.append(all);
   table.flush();
@@ -44,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string path = "/dev/shm/bplbm_fuzz_" + std::to_string(getpid()) + ".h5";
   {
     const hdf5::Handle file = hdf5::open_file(path, hdf5::Open::CreateForReaders);
-    auto frames = Table<FrameRow>::create(file, "frames");
+    auto frames = Table<FrameRow>::create(file, "frames", kChunk);
     for (std::size_t at = 0; at + 11 <= size && at < 110; at += 11) {
       const FrameRow row = row_of(data + at);
       frames.append({&row, 1});
@@ -53,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fill<State>(file, "states", 6);
     fill<Shape>(file, "shapes", 6);
     fill<Load>(file, "loads", 6);
-    auto bytes = Table<std::byte>::create(file, "bytes");
+    auto bytes = Table<std::byte>::create(file, "bytes", kChunk);
     bytes.append(std::as_bytes(std::span(data, std::min<std::size_t>(size, 200))));
     bytes.flush();
     hdf5::set_attribute(file, "trace_version", std::int64_t{2});

@@ -214,6 +214,40 @@ TEST(Image, OfADiscHasItsDragInGrey) {
   EXPECT_GT(worst, 0.02);
 }
 
+// A packing drawn as an image takes the memory of its spheres: populations of the box, and blocks
+// where it covers cells. (A block holds eight cells with 128 bytes, spheres besides one of their
+// own where two meet in a block.)
+TEST(Image, OfAPackingTakesTheMemoryOfItsSpheres) {
+  constexpr int n = 64, along = 4;
+  const Domain box{n, n, Side::Periodic, Side::Periodic, n, Side::Periodic};
+  auto image = std::make_shared<Voxels>();
+  image->size = {n, n, n};
+  image->solid.assign(static_cast<std::size_t>(n) * n * n, 0.0F);
+  std::vector<Body> spheres;
+  for (int k = 0; k < along * along * along; ++k) {
+    Body& body = spheres.emplace_back();
+    body.id = k + 1;
+    body.radius = 7.7;
+    body.centre = {16.0 * (k % along) + 8.3, 16.0 * (k / along % along) + 8.1,
+                   16.0 * (k / along / along) + 7.8};
+    fill({Ball{body.centre, body.radius}}, box, Block::whole(box), {},
+         [&](const FractionSpan& span) {
+           for (std::size_t i = 0; i < span.fractions.size(); ++i)
+             image->solid[image->index(span.x + static_cast<int>(i), span.y, span.z)] +=
+                 static_cast<float>(span.fractions[i]);
+         });
+  }
+  Fluid drawn(box, choice("D3Q19", {})), placed(box, choice("D3Q19", {}));
+  drawn.add({VoxelSolid{image, {}, 1, 1}});
+  placed.place(spheres);
+  auto as_image = drawn.bytes(), as_spheres = placed.bytes();
+  std::printf("64 spheres in 64³ cells: %.1f MB of solids as an image, %.1f MB as spheres\n",
+              1e-6 * as_image["solids"], 1e-6 * as_spheres["solids"]);
+  EXPECT_EQ(as_image["populations"], as_spheres["populations"]);
+  EXPECT_LT(as_image["solids"], 1.1 * as_spheres["solids"]);
+  EXPECT_GT(as_image["solids"], 0.5 * as_spheres["solids"]);
+}
+
 // A run that goes on from a record has the loads of the one that did not stop, to the bit.
 TEST(Mesh, KeepsItsLoadsOverARestart) {
   const Geometry ball = of(test::sphere_mesh({8.1, 8.2, 7.9}, 5.0, 3));

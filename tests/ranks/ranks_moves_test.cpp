@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 /// Blocks that are cut anew while a fluid goes on: its state, and the particles on their way to it.
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/particle_relay.h"
 #include "lbm_solver/field/moved_record.h"
 #include "protocol/wire/routing.h"

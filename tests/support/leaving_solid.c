@@ -30,6 +30,8 @@ static void leave_at(const char* here) {
 static void misuse(const bplbm_setup* setup, const bplbm_state* state, const bplbm_shape* shape) {
   bplbm_solid* second = NULL;
   bplbm_load load;
+  bplbm_shape clump;
+  const double places[6] = {0.0}, radii[2] = {1e-3, -1.0};
   double number = 0.0;
   if (!strcmp(how, "scene")) bplbm_scene(wire, NULL);
   if (!strcmp(how, "number")) bplbm_number(wire, NULL, &number);
@@ -45,6 +47,8 @@ static void misuse(const bplbm_setup* setup, const bplbm_state* state, const bpl
     bplbm_exchange(wire, 1, state, shape, &load, NULL);
   }
   if (!strcmp(how, "checkpoint")) bplbm_checkpoint(wire, "state", 5);
+  if (!strcmp(how, "clump")) bplbm_clump(wire, 2, places, radii, 1000.0, &clump, NULL, NULL);
+  if (!strcmp(how, "no_clump")) bplbm_clump(wire, 0, places, radii, 1000.0, &clump, NULL, NULL);
   if (!strcmp(how, "code")) bplbm_fail(wire, 300, "has had enough");
   if (!strcmp(how, "connect")) {
     bplbm_connect(&second, "second", "test");

@@ -187,7 +187,7 @@ void play_to(Channel& channel, const std::string& stage) {
   if (stage == "version") hello.version = 3;
   if (stage == "hello" || stage == "version") {
     for (int r = 0; r < channel.remote_size(); ++r)
-      channel.send(r, encode(hello), {kTimeout, "it to take our hello"});
+      channel.send(r, encode(hello), {kTimeout, "it to take our handshake"});
     throw Here();
   }
   try {

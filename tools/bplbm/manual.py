@@ -23,14 +23,14 @@ STYLE = """
 # Readers, and what they read first; every other document comes under the last heading, by its folder.
 READERS = {
     "Start": ["README.md", "cases/TUTORIAL.md", "cases/RUNNING.md", "cases/TROUBLESHOOTING.md", "cases/PYTHON.md"],
-    "Scenes": ["cases/README.md", "cases/*/README.md"],
+    "Scenes": ["cases/README.md", "cases/*/*.md"],
     "Reference": ["lbm_solver/docs/scene.md", "lbm_solver/docs/output.md", "liggghts_coupling/docs/commands.md",
                   "lbm_solver/docs/parallel.md"],
     "Theory": [f"lbm_solver/docs/{page}.md" for page in ("collision", "solids", "resistance", "boundaries", "loads")]
     + ["liggghts_coupling/bond/README.md", "lbm_solver/docs/bibliography.md"],
     "Evidence": ["tests/EVIDENCE.md", "lbm_solver/docs/defaults.md", "lbm_solver/docs/performance.md",
                  "cases/report/README.md", "cases/report/full/README.md"],
-    "Contributing": ["CONTRIBUTING.md", "protocol/README.md", "CHANGELOG.md"],
+    "Contributing": ["CONTRIBUTING.md", "protocol/README.md", "protocol/WIRE.md", "CHANGELOG.md"],
     "Rooms": ["**/*.md"],
 }
 

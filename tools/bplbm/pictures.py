@@ -14,6 +14,12 @@ plt.rcParams.update({
 })
 
 UNITS = {1.0: "m", 1e-2: "cm", 1e-3: "mm"}
+SPEED = plt.get_cmap("magma").with_extremes(bad="0.6")  # grey: no fluid
+
+
+def speed_of_fluid(frame):
+    """Of each cell; not a number where a solid covers it whole."""
+    return np.where(np.isfinite(frame["pressure"]), np.linalg.norm(frame["velocity"], axis=-1), np.nan)
 
 
 def draw_discs(axes, discs, particles):
@@ -26,12 +32,11 @@ def draw_discs(axes, discs, particles):
 
 
 def draw_speed(axes, run, name, vmax, length_unit=1e-2):
-    """Colour map of the fluid's speed with the particles on it. Returns the image."""
+    """Colour map of the fluid's speed with the particles on it, obstacles in grey. Returns the image."""
     frame = run.frame(name)
     p = run.parameters
-    speed = np.hypot(frame["velocity"][..., 0], frame["velocity"][..., 1])
     extent = [0, p["box_x"] / length_unit, 0, p["box_y"] / length_unit]
-    image = axes.imshow(speed, origin="lower", extent=extent, cmap="magma", vmin=0, vmax=vmax)
+    image = axes.imshow(speed_of_fluid(frame), origin="lower", extent=extent, cmap=SPEED, vmin=0, vmax=vmax)
     draw_discs(axes, frame["particles"][:, 1:4] / length_unit, frame["particles"])
     axes.grid(False)
     return image
@@ -48,11 +53,11 @@ def draw_slice(axes, run, name, normal, at=None, vmax=None, length_unit=1e-2, qu
     across, up = [a for a in range(3) if a != axis]
     size = [p["box_x"], p["box_y"], p["box_z"]]
     at = 0.5 * size[axis] if at is None else at
-    values = np.linalg.norm(frame["velocity"], axis=-1) if quantity is None else quantity
+    values = speed_of_fluid(frame) if quantity is None else quantity
     cells = values.shape[2 - axis]
     layer = np.take(values, min(cells - 1, int(at / size[axis] * cells)), axis=2 - axis)  # [up][across]
     extent = [0, size[across] / length_unit, 0, size[up] / length_unit]
-    image = axes.imshow(layer, origin="lower", extent=extent, cmap="magma", vmin=0, vmax=vmax)
+    image = axes.imshow(layer, origin="lower", extent=extent, cmap=SPEED, vmin=0, vmax=vmax)
     particles = frame["particles"]
     depth = particles[:, 1 + axis] - at
     cut = np.abs(depth) < particles[:, 4]

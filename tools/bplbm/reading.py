@@ -6,7 +6,7 @@ UNIT_OF_COLUMN = {"time": "s", **dict.fromkeys(("x", "y", "z"), "m"),
                   **dict.fromkeys(("vx", "vy", "vz", "ux", "uy", "uz"), "m/s"),
                   **dict.fromkeys(("omega", "wx", "wy", "wz"), "rad/s"), **dict.fromkeys(("fx", "fy", "fz", "force"), "N"),
                   **dict.fromkeys(("torque", "tx", "ty", "tz"), "N m"), "pressure": "Pa", "radius": "m"}
-UNIT_OF_FIELD = {"velocity": "m/s", "pressure": "Pa", "solid_fraction": "1", "viscosity": "m2/s"}
+UNIT_OF_FIELD = {"velocity": "m/s", "pressure": "Pa", "solid_fraction": "1", "image_fraction": "1", "viscosity": "m2/s"}
 PARTICLE = {2: ("id", "x", "y", "radius", "vx", "vy", "omega", "type"),
             3: ("id", "x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz", "type")}
 BOND_STATES = ("intact", "broken by tension", "broken by shear")

@@ -140,10 +140,13 @@ def add_solid_waiting(out):
     summary = json.loads(path.read_text())
     summary["solid_waiting"] = float(found.group(1))
     summary["units"]["solid_waiting"] = "s"
+    hint = hint_of_waiting(summary["waiting"], summary["solid_waiting"], summary["wall_seconds"])
+    if hint:
+        summary["hint"] = hint
     path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
     print(f"run | waiting: the fluid {summary['waiting']:.3g} s for the solid, the solid {summary['solid_waiting']:.3g} s for "
           f"the fluid, of {summary['wall_seconds']:.3g} s")
-    if hint := hint_of_waiting(summary["waiting"], summary["solid_waiting"], summary["wall_seconds"]):
+    if hint:
         print(f"run | hint | {hint}")
 
 

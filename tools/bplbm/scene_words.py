@@ -16,7 +16,8 @@ def words(boundary):
     """A boundary condition in a few words."""
     kind = boundary["kind"].replace("_", " ")
     if "pressure" in boundary:
-        return f"{kind} {boundary['pressure'] / 1e3:g} kPa" if boundary["pressure"] else f"{kind} 0"
+        pressure = boundary["pressure"]
+        return f"{kind} {pressure / 1e3:g} kPa" if abs(pressure) >= 1e3 else f"{kind} {pressure:g} Pa" if pressure else f"{kind} 0"
     if "velocity" in boundary:
         return f"{kind} {np.linalg.norm(boundary['velocity']):g} m/s {boundary.get('profile', '')}".rstrip()
     return kind

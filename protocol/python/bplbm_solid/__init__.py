@@ -8,7 +8,7 @@
         while (loads := fluid.exchange(states, shapes)) is not None:
             ...  # substeps with loads["force"] [N] and loads["torque"] [N m]; then new states and shapes
 
-README.md beside this package has a whole engine; protocol/README.md has the wire itself.
+README.md beside this package has a whole engine; protocol/WIRE.md has the wire itself.
 """
 
 from .clump import Clump, union_moments

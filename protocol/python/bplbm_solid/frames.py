@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frames to messages and back, from protocol/README.md."""
+"""Frames to messages and back, from protocol/WIRE.md."""
 
 import struct
 from dataclasses import dataclass, field, fields
@@ -28,7 +28,7 @@ def _as(form: str):
 
 @dataclass
 class Handshake:
-    """Everything that both sides must agree on before the first step; the wire's `hello`, field by field."""
+    """Everything that both sides must agree on before the first step; the wire's handshake, field by field."""
 
     version: int = _as("I")
     role: int = _as("I")

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <deque>
 
+#include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/immersed/moving_shape.h"
 #include "lbm_solver/immersed/weight.h"
 #include "lbm_solver/solver/fluid.h"
+#include "tests/support/meshes.h"
 
 namespace {
 
@@ -174,6 +177,17 @@ TEST(CoverMap, GrowsByOneDiscAtATime) {
     for (int k = 0; k < 9; ++k)
       EXPECT_EQ(cover.solid_fraction(4 + 5 * k, 20), k <= i ? 1.0 : 0.0) << i << ' ' << k;
   }
+}
+
+TEST(CoverMap, AMeshThatMovesComesBeforeTheBodies) {
+  CoverMap cover(kDomain);
+  const auto shape = [] {
+    const auto mesh = std::make_shared<const TriangleMesh>(test::sphere_mesh({20, 20, 0}, 4, 1));
+    return std::make_unique<MovingShape>(MeshSolid{mesh, false}, RadiusShift{});
+  };
+  cover.add(shape());
+  cover.update(cluster());
+  EXPECT_THROW(cover.add(shape()), std::logic_error);
 }
 
 TEST(CoverMap, NextCoveredSkipsPureFluid) {

@@ -55,6 +55,12 @@ TEST(Diagnosis, OfDiscsThatOverlap) {
               {"It is particle 2.", "overlaps particle 1"});
 }
 
+TEST(Diagnosis, OfAParticleThatIsTooFastByItself) {
+  expect_says({.at = std::nullopt, .discs = {{0.01, 0.03}, {0.01, 0.04}}},
+              {"It is particle 2.", "if this motion is right",
+               "the velocity that the particle was given, and at its contacts"});
+}
+
 TEST(Diagnosis, OfADriveThatIsTooStrong) {
   expect_says({.from = "gravity = [0.0, -9.8]", .to = "body_force = [0.0, 50.0]"},
               {"fluid.body_force = 50 m/s² can give 1.41 m/s", "its value and unit"});

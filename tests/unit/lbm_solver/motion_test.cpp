@@ -7,7 +7,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/base/mass_moments.h"
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/inner_fluid.h"
 #include "lbm_solver/coupling/motion_words.h"
 #include "lbm_solver/immersed/moving_shape.h"
@@ -268,7 +268,7 @@ TEST_F(Motions, ThatTheSolidCannotFollowAreRefusedInACoupledScene) {
   const auto has = [&](const std::string& obstacle, const std::string& name) {
     EXPECT_TRUE(is_reserved_variable(name));
     const Scene s = read(2, obstacle);
-    for (const auto& v : make_hello(s, make_plan(s)).variables)
+    for (const auto& v : make_handshake(s, make_plan(s)).variables)
       if (v.name == name) return v.value;
     return std::string("none");
   };

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "tests/unit/lbm_solver/scene_files.h"
@@ -137,10 +137,10 @@ TEST(Plan, ReportSaysWhatTheHydraulicRatioDoes) {
   EXPECT_NE(describe(s, make_plan(s)).find("ratio 1, 0.8 by type:"), std::string::npos);
 }
 
-TEST(Plan, HelloOffersEveryNumberTheScriptNeeds) {
+TEST(Plan, HandshakeOffersEveryNumberTheScriptNeeds) {
   const Scene s = settling_disc();
   const Plan p = make_plan(s);
-  const auto hello = make_hello(s, p);
+  const auto hello = make_handshake(s, p);
   const auto value = [&](const std::string& name) -> std::string {
     for (const auto& v : hello.variables)
       if (v.name == name) return v.value;

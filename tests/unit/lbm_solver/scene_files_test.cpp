@@ -6,7 +6,7 @@
 #include <random>
 
 #include "lbm_solver/base/errors.h"
-#include "lbm_solver/coupling/hello.h"
+#include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/solver/plan.h"
@@ -88,7 +88,7 @@ TEST_F(SceneFiles, EveryNameThatTheFluidOffersIsReserved) {
     const Scene s =
         read_scene({std::string(BPLBM_SOURCE_DIR "/cases/") +
                     (flat ? "settling_disc/scene.toml" : "ten_cate_sphere/scene.toml")});
-    for (const auto& v : make_hello(s, make_plan(s)).variables)
+    for (const auto& v : make_handshake(s, make_plan(s)).variables)
       EXPECT_NE(is_reserved_variable(v.name), s.particles->variables.contains(v.name)) << v.name;
   }
 }

@@ -3,6 +3,7 @@
 #include "lbm_solver/io/table_reader.h"
 
 #include <gtest/gtest.h>
+#include <toml++/toml.h>
 
 #include <functional>
 

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import unittest
+import unittest.mock
 from urllib.parse import unquote
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -40,6 +41,10 @@ class Documents(unittest.TestCase):
         self.assertEqual(documents.wrapped(text), text)
         wide = text.replace("`a b`", "`a b` then some more")
         self.assertEqual(documents.wrapped(wide), wide.replace(" then some more\n ", " then some\n  more"))
+
+    def test_a_long_readme_is_found(self):
+        with unittest.mock.patch.object(documents, "LONGEST", 5):
+            self.assertIn("lbm_solver/base/README.md has more than 5 lines", list(documents.long_readmes()))
 
     def test_a_citation_that_is_in_no_bibliography_is_found(self):
         cited = " ".join(documents.unknown_citations(set()))

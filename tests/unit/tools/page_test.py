@@ -18,7 +18,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 import h5py  # noqa: E402
 import numpy as np  # noqa: E402
-from bplbm import result, run as launcher  # noqa: E402
+from bplbm import pictures, result, run as launcher  # noqa: E402
 from bplbm.page import flow, histories, picture  # noqa: E402
 from bplbm.page.failed import write_failed_page  # noqa: E402
 from bplbm.page.run import write_page  # noqa: E402
@@ -165,6 +165,16 @@ class Page(Output):
         self.assertIsNone(launcher.hint_of_waiting(0.9, 0.9, 1.0))  # too short to matter
         self.assertIn("for 90% of the time each program waited", launcher.hint_of_waiting(9.4, 9.6, 10.0))
 
+    def test_the_whole_job_takes_the_place_of_the_fluids_own_hint(self):
+        self.write(2)
+        (self.out / "lbm.log").write_text("hint         the fluid waits 98 % of its time for the solid: --solid-ranks\n")
+        hints = lambda: self.page().split("Warnings and hints")[1]  # noqa: E731
+        self.assertIn("the fluid waits 98 %", hints())
+        summary = json.loads((self.out / "summary.json").read_text())
+        (self.out / "summary.json").write_text(json.dumps({**summary, "hint": "each program waited for the other one"}))
+        self.assertNotIn("the fluid waits 98 %", hints())
+        self.assertIn("each program waited", hints())
+
     def test_is_cheap(self):
         self.write(2, frames=100)
         start = time.process_time()
@@ -240,6 +250,18 @@ class Flow(Output):
         plane = flow.read_planes(self.write(3))[-1]
         self.assertEqual(plane.speed.shape, (20, 40))
         np.testing.assert_allclose(plane.discs, [[0.005, 0.005, 0.001]])  # the other one lies 4.5 mm off
+
+    def test_solids_are_grey(self):
+        run = self.write(2)  # whose lowest row of cells has no pressure: a solid covers it whole
+        plane = flow.read_planes(run)[-1]
+        speeds = pictures.speed_of_fluid(run.frame("frame000003"))
+        for speed in (plane.speed, speeds):
+            self.assertTrue(np.isnan(speed[0]).all())
+            np.testing.assert_allclose(speed[1:], np.tile(np.arange(40) * 3e-3, (19, 1)), rtol=1e-6)
+        scale = flow.scales([plane])["speed"]
+        self.assertEqual(scale.high, np.float32(0.117))
+        self.assertTrue((scale.indices(plane.speed)[0] == picture.NOTHING).all())
+        self.assertEqual(tuple(np.round(pictures.SPEED(np.nan)[:3], 2)), (0.6, 0.6, 0.6))
 
     def test_the_drawing_counts_from_the_upper_left_corner(self):
         run = self.write(2)

@@ -1,5 +1,6 @@
 """The documents: every link leads somewhere, every citation is in the bibliography, every file that they name exists, no
-line of prose is wider than 120 characters, every room opens with a short README, and that names the room's files."""
+line of prose is wider than 120 characters, every room opens with a README, every README is short, and a room's names the
+room's files."""
 
 import pathlib
 import re
@@ -9,12 +10,12 @@ import sys
 from bplbm.project import ROOT
 
 WIDEST = 120  # characters of a line of prose; rows of tables, code and links alone may be longer
-LONGEST = 60  # lines of a room's README
+LONGEST, LONGEST_ROOT = 60, 80  # lines of a folder's README, and of the first one
 BIBLIOGRAPHY = "lbm_solver/docs/bibliography.md"
-ROOMS = ("lbm_solver", "liggghts_coupling", "protocol", "tools", "tests")
+ROOMS = ("lbm_solver", "liggghts_coupling", "protocol", "tools", "tests")  # each folder has a README
 # Folders that hold data of the room above, and READMEs that are a text of their own.
 DATA = re.compile(r"tests/(fuzz/corpus|unit/lbm_solver/pictures|hard/|support/stopped)|tools/bplbm/templates/|protocol/python/bplbm_solid")
-LONG = {"protocol/README.md", "protocol/python/README.md"}  # the text of the wire, and the page of a package
+LONG = {"protocol/python/README.md"}  # the page of a package
 # Rooms whose README names each of their files, but for those whose name says enough.
 NAMED = re.compile(r"(lbm_solver/\w+|liggghts_coupling/\w+|protocol/(wire|transport|program|solid)|"
                    r"tests/(coupled|fuzz|performance|physics|sanitized|support))/[^/]+$")
@@ -141,8 +142,14 @@ def rooms_without_readme():
         readme = folder / "README.md"
         if not readme.exists():
             yield f"{name(folder)} has no README.md"
-        elif name(readme) not in LONG and len(readme.read_text().splitlines()) > LONGEST:
-            yield f"{name(readme)} has more than {LONGEST} lines"
+
+
+def long_readmes():
+    for path in tracked("*README.md"):
+        longest = LONGEST_ROOT if path.parent == ROOT else LONGEST
+        if name(path) not in LONG and not WRITTEN_BY_TOOLS.match(name(path)) \
+                and len(path.read_text().splitlines()) > longest:
+            yield f"{name(path)} has more than {longest} lines"
 
 
 def unnamed_files():
@@ -165,6 +172,7 @@ def complaints():
         yield from lost_files(path, text)
     yield from unknown_citations(known)
     yield from rooms_without_readme()
+    yield from long_readmes()
     yield from unnamed_files()
 
 

@@ -45,8 +45,8 @@ def scene_keys():
 
 def script_variables():
     """The particle's number and the axis are filled in."""
-    offered = read("lbm_solver/coupling/hello.cpp")
-    names = found(r'(?:number|whole)\("(\w+)"|push_back\(\{"(\w+)"', offered)
+    offered = read("lbm_solver/coupling/handshake.cpp")
+    names = found(r'(?:number|whole)\("(\w+)"|\{"(\w\w+)", ', offered)
     names |= {name.format(axis) for name in found(r'fmt::format\("([\w{}]+)", axis', offered) for axis in "xyz"}
     names |= {name.format(1) for name in found(r'fmt::format\("([\w{}]+)", i \+ 1', offered)}
     names |= found(r'"-var", "(\w+)"|\{"(\w+_folder)"', read("liggghts_coupling/host/main.cpp"))

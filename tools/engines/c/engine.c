@@ -269,8 +269,8 @@ int main(void) {
   bplbm_agree(s.wire, &s.setup);
   while (exchange(&s, &asked) == BPLBM_OK && !(asked & BPLBM_LAST)) {
     advance(&s);
-    if (asked & BPLBM_CHECKPOINT) bplbm_checkpoint(s.wire, s.states, s.rank == 0 ? s.n * (int64_t)sizeof *s.states : 0);
     insert(&s, ++interval);
+    if (asked & BPLBM_CHECKPOINT) bplbm_checkpoint(s.wire, s.states, s.rank == 0 ? s.n * (int64_t)sizeof *s.states : 0);
   }
   return bplbm_close(s.wire);
 }

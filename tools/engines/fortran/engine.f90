@@ -209,10 +209,10 @@ program engine
       code = bplbm_exchange(wire, size(states, kind=c_int64_t), states, shapes, loads, asked)
       if (code /= BPLBM_OK .or. iand(asked, BPLBM_LAST) /= 0) exit
       call advance
-      if (iand(asked, BPLBM_CHECKPOINTS) /= 0) &
-        code = bplbm_checkpoint(wire, c_loc(states), size(states) * c_sizeof(states(1)))
       interval = interval + 1
       call insert(interval)
+      if (iand(asked, BPLBM_CHECKPOINTS) /= 0) &
+        code = bplbm_checkpoint(wire, c_loc(states), size(states) * c_sizeof(states(1)))
     end do
   end if
   code = bplbm_close(wire)

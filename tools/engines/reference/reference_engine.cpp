@@ -1,402 +1,207 @@
 // SPDX-License-Identifier: MIT
-/// A small solid program: soft discs with linear springs and dashpots, alone or as equal clumps, on
-/// one rank. Everything that it needs comes as variables of the fluid's scene; it has no input
-/// file.
-///
-///   F_n = k δ - γ v_n,  γ = 2 ξ √(m k), between discs and with walls; velocity Verlet, in which
-///   the load of an interval acts in each of its substeps, its first half-step included.
+/// A small solid program in C++, to copy: its conversation with the fluid. It has no input file:
+/// everything that it needs comes as variables of the fluid's scene. Its particles are in discs.h,
+/// what it knows of the library is in solid.h.
 ///
 /// The variable `clump`, "x,y,z,r:x,y,z,r…" in metres about any point, makes one of each particle.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <exception>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <numbers>
 #include <sstream>
+#include <string>
 
-#include "protocol/program/mpi_start.h"
-#include "protocol/program/program.h"
-#include "protocol/program/solid_parts.h"
-#include "protocol/program/watch.h"
-#include "protocol/transport/mpi_channel.h"
-#include "protocol/wire/ball_union.h"
-#include "protocol/wire/clumps.h"
-#include "protocol/wire/codec.h"
-#include "protocol/wire/numbers.h"
-#include "protocol/wire/session.h"
+#include "discs.h"
+#include "solid.h"
 
 namespace {
 
-using namespace protocol;
+const std::string kAxes[] = {"x", "y"};
 
-/// Numbers and texts that the fluid offers.
-class Offer {
- public:
-  explicit Offer(const Hello& fluid) {
-    for (const Variable& v : fluid.variables) values_[v.name] = v.value;
-  }
-  double number(const std::string& name) const {
-    const auto found = values_.find(name);
-    if (found == values_.end())
-      throw ProgramError(fmt::format("the fluid offers no variable '{}'", name), kBadInput);
-    const auto value = to_number<double>(found->second);
-    if (!value)
-      throw ProgramError(fmt::format("the fluid's variable '{}' = '{}' is no number; correct "
-                                     "[particles.variables] of the scene",
-                                     name, found->second),
-                         kBadInput);
-    return *value;
-  }
-  double number_or(const std::string& name, double otherwise) const {
-    return values_.contains(name) ? number(name) : otherwise;
-  }
-  std::string text(const std::string& name) const { return values_.at(name); }
-  bool has(const std::string& name) const { return values_.contains(name); }
+// ---- what the scene says ------------------------------------------------------------------------
 
- private:
-  std::map<std::string, std::string> values_;
+Box read_box(const Solid& solid) {
+  Box box;
+  for (int k = 0; k < 2; ++k) {
+    box.low[k] = solid.number(kAxes[k] + "_lo");
+    box.high[k] = solid.number(kAxes[k] + "_hi");
+    box.periodic[k] = solid.text("boundary_" + kAxes[k]) == "p";
+    box.walls[k] = solid.number("walls_" + kAxes[k]) != 0.0;
+  }
+  return box;
+}
+
+bplbm_shape disc(double radius, double mass) {
+  return {.id = 0,
+          .radius = radius,
+          .mass = mass,
+          .inertia = 0.5 * mass * radius * radius,
+          .type = 1,
+          .epoch = 0,
+          .carrier = BPLBM_ITSELF,
+          .volume = 0.0};
+}
+
+struct Parts {
+  std::vector<double> places, radii;  ///< [n][3], [n]
 };
 
-struct Box {
-  Vec3 lo{}, hi{};
-  bool periodic[2]{}, walls[2]{};
-};
+Parts read_clump(const Solid& solid, const Box& box) {
+  std::string text = solid.text("clump");
+  const auto commas = std::ranges::count(text, ','), colons = std::ranges::count(text, ':');
+  for (char& c : text)
+    if (c == ',' || c == ':') c = ' ';
+  std::istringstream numbers(text);
+  const double most = std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+  Parts parts;
+  bool fit = true;
+  for (double x, y, z, r; numbers >> x >> y >> z >> r;) {
+    parts.places.insert(parts.places.end(), {x, y, z});
+    parts.radii.push_back(r);
+    fit = fit && r > 0.0 && std::max({r, std::abs(x), std::abs(y)}) <= most;
+  }
+  const auto n = std::ssize(parts.radii);
+  if (n == 0 || !numbers.eof() || commas != 3 * n || colons != n - 1 || !fit)
+    solid.fail(BPLBM_BAD_INPUT, "the variable 'clump' = '" + solid.text("clump") +
+                                    "' is no list of x,y,z,r:x,y,z,r… with radii above 0, in a "
+                                    "clump no larger than the box; correct [particles.variables]");
+  return parts;
+}
 
-class Discs {
- public:
-  Discs(const Hello& fluid, const Offer& offer) : offer_(offer) {
-    const char* axis[] = {"x", "y", "z"};
-    for (int k = 0; k < 3; ++k) {
-      box_.lo[k] = offer.number(fmt::format("{}_lo", axis[k]));
-      box_.hi[k] = offer.number(fmt::format("{}_hi", axis[k]));
-      if (k == 2) break;
-      box_.periodic[k] = offer.text(fmt::format("boundary_{}", axis[k])) == "p";
-      box_.walls[k] = offer.number(fmt::format("walls_{}", axis[k])) != 0.0;
-    }
-    const double radius = 0.5 * offer.number("diameter_max");
-    const double mass =
-        offer.number("density_max") * std::numbers::pi * radius * radius * offer.number("depth");
-    shapes_of_one_ = {{0, radius, mass, 0.5 * mass * radius * radius, 1}};
-    arms_ = {Vec3{}};
-    if (offer.has("clump")) make_clump(offer.text("clump"));
-    step_ = offer.number("solid_step");
-    stiffness_ = offer.number_or("contact_stiffness", 1e5);
-    damping_ = 2.0 * offer.number_or("damping_ratio", 0.5) * std::sqrt(mass * stiffness_);
-    const double g = offer.number("gravity");
-    gravity_ = {g * offer.number("gravity_x"), g * offer.number("gravity_y"), 0.0};
-    if (fluid.first_interval > 0)
-      read(offer.text("restart_file"));
-    else
-      insert(0);
+/// Discs in the frame of their clump, whose centre is that of their union.
+void make_clump(const Solid& solid, const Box& box, double density, Kind& kind) {
+  const auto [places, radii] = read_clump(solid, box);
+  double centre[3]{};
+  kind.shapes[0] = solid.clump(places, radii, density, centre);
+  for (std::size_t j = 0; j < radii.size(); ++j) {
+    kind.arms.push_back({places[3 * j] - centre[0], places[3 * j + 1] - centre[1]});
+    kind.shapes.push_back(disc(radii[j], 0.0));
   }
+}
 
-  /// Takes particles out of the box and puts others into it, as the scene says for an interval.
-  void insert(int interval) {
-    for (int i = 1;; ++i) {
-      const std::string p = fmt::format("particle{}_", i);
-      if (offer_.number_or(p + "x", NAN) != offer_.number_or(p + "x", NAN)) return;
-      const auto id = static_cast<std::int64_t>(offer_.number_or(p + "id", i));
-      if (offer_.number_or(p + "until", -1.0) == interval) remove(id);
-      if (offer_.number_or(p + "interval", 0.0) != interval) continue;
-      State s;
-      s.x = {offer_.number(p + "x"), offer_.number(p + "y"), 0.0};
-      s.v = {offer_.number_or(p + "vx", 0.0), offer_.number_or(p + "vy", 0.0), 0.0};
-      add(id, s, interval);
-    }
-  }
-  /// Discs and clumps, without the discs of clumps.
-  std::int64_t bodies() const {
-    return std::ranges::count_if(shapes, [](const Shape& s) { return !is_part(s); });
-  }
+Kind read_kind(const Solid& solid, const Box& box) {
+  const double radius = 0.5 * solid.number("diameter_max"), density = solid.number("density_max");
+  const double mass = density * std::numbers::pi * radius * radius * solid.number("depth");
+  Kind kind{.shapes = {disc(radius, mass)}, .arms = {Vec2{}}};
+  if (solid.has("clump")) make_clump(solid, box, density, kind);
+  kind.stiffness = solid.number_or("contact_stiffness", 1e5);
+  kind.damping = 2.0 * solid.number_or("damping_ratio", 0.5) * std::sqrt(mass * kind.stiffness);
+  const double g = solid.number("gravity");
+  kind.gravity = {g * solid.number("gravity_x"), g * solid.number("gravity_y")};
+  return kind;
+}
 
-  /// A checkpoint is a frame of states, as it would go to the fluid.
-  Bytes checkpoint(const StepHeader& head) const {
-    return encode(StateBatch{head, {}, states, shapes, {}});
+/// What both sides compare: what this program computes with, not what the fluid said.
+bplbm_setup setup_of(const Solid& solid, const Box& box, const Kind& kind) {
+  bplbm_setup setup = solid.scene();
+  setup.dimension = 2;
+  setup.periodic[2] = 1;
+  for (int k = 0; k < 2; ++k) {
+    setup.periodic[k] = box.periodic[k];
+    setup.box_low[k] = box.low[k];
+    setup.box_high[k] = box.high[k];
+    setup.gravity[k] = kind.gravity[k];
   }
-  /// Every path of the discs is decided by places and velocities: a restart goes on to the bit.
-  void read(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const auto* begin = reinterpret_cast<const std::byte*>(text.data());
-    try {
-      StateBatch batch = decode<StateBatch>({begin, begin + text.size()});
-      states = std::move(batch.states);
-      shapes = std::move(batch.shapes);
-    } catch (const BadMessage& error) {
-      throw ProgramError(file + " is no checkpoint of this engine: " + error.what(), kBadInput);
-    }
-  }
+  setup.box_low[2] = solid.number("z_lo");
+  setup.box_high[2] = solid.number("z_hi");
+  setup.gravity[2] = 0.0;
+  setup.depth = solid.number("depth");
+  if (setup.buoyancy != BPLBM_BUOYANCY_NONE) setup.buoyancy = BPLBM_BUOYANCY_BY_FLUID;
+  setup.schedule = BPLBM_SERIAL;
+  setup.step = solid.number("solid_step");
+  setup.steps = static_cast<std::int32_t>(solid.number("substeps"));
+  setup.checkpoints = 1;
+  for (int side = 0; side < 6; ++side) setup.sides[side] = side < 4 && box.walls[side / 2];
+  std::fill_n(setup.radius, 2, 0.0);  // not said: the fluid looks at each particle
+  std::fill_n(setup.density, 2, 0.0);
+  return setup;
+}
 
-  /// Some steps under one load each; what leaves an open box is gone.
-  void advance(std::uint32_t steps, std::span<const Load> loads) {
-    std::vector<Acceleration> acceleration = accelerations(loads);
-    for (std::uint32_t n = 0; n < steps; ++n) {
-      kick(acceleration);
-      drift();
-      acceleration = accelerations(loads);
-      kick(acceleration);
-    }
-    std::vector<std::int64_t> gone;
-    for (std::size_t i = 0; i < states.size(); ++i)
-      if (!put_into_box(states[i]) && !is_part(shapes[i])) gone.push_back(shapes[i].id);
-    for (const std::int64_t id : gone) remove(id);
-  }
+// ---- what comes and goes ------------------------------------------------------------------------
 
-  const Box& box() const { return box_; }
-  const Vec3& gravity() const { return gravity_; }
-  double step() const { return step_; }
-  std::vector<State> states;
-  std::vector<Shape> shapes;
-
- private:
-  struct Acceleration {
-    Vec3 of_place{};    ///< [m/s²]
-    double spin = 0.0;  ///< [rad/s²]
-  };
-
-  /// Discs in the frame of their clump, whose centre is that of their union.
-  void make_clump(std::string text) {
-    std::vector<Ball> balls;
-    const auto commas = std::ranges::count(text, ','), colons = std::ranges::count(text, ':');
-    for (char& c : text)
-      if (c == ',' || c == ':') c = ' ';
-    std::istringstream numbers(text);
-    for (Ball b; numbers >> b.x[0] >> b.x[1] >> b.x[2] >> b.radius;) balls.push_back(b);
-    const auto n = std::ssize(balls);
-    const double most = std::max(box_.hi[0] - box_.lo[0], box_.hi[1] - box_.lo[1]);
-    const bool fit = std::ranges::all_of(balls, [most](const Ball& b) {
-      return b.radius > 0.0 && std::max({b.radius, std::abs(b.x[0]), std::abs(b.x[1])}) <= most;
-    });
-    if (n == 0 || !numbers.eof() || commas != 3 * n || colons != n - 1 || !fit)
-      throw ProgramError("the variable 'clump' = '" + offer_.text("clump") +
-                             "' is no list of x,y,z,r:x,y,z,r… with radii above 0, in a clump no "
-                             "larger than the box; correct [particles.variables]",
-                         kBadInput);
-    const double depth = offer_.number("depth");
-    const Vec3 centre = moments_of_union(balls, 2, depth).centroid;
-    for (Ball& b : balls)
-      for (int k = 0; k < 2; ++k) b.x[k] -= centre[k];
-    const UnionMoments moments = moments_of_union(balls, 2, depth);
-    Shape body = shapes_of_one_[0];
-    body.radius = bounding_radius(balls);
-    body.volume = moments.volume;
-    body.mass = offer_.number("density_max") * moments.volume;
-    body.inertia = body.mass * (moments.second[0] + moments.second[1]);
-    shapes_of_one_ = {body};
-    for (const Ball& b : balls) {
-      shapes_of_one_.push_back({0, b.radius, 0.0, 0.0, 1});
-      arms_.push_back(b.x);
-    }
-  }
-
-  /// A disc, or a clump and its discs.
-  void add(std::int64_t id, const State& centre, int interval) {
-    for (std::size_t j = 0; j < arms_.size(); ++j) {
-      states.push_back(centre);
-      shapes.push_back(shapes_of_one_[j]);
-      states.back().id = shapes.back().id = id + 1'000'000 * static_cast<std::int64_t>(j);
-      shapes.back().epoch = interval;
-      if (j > 0) shapes.back().carrier = id;
-      for (int k = 0; k < 2; ++k) states.back().x[k] += arms_[j][k];
-    }
-  }
-  void remove(std::int64_t id) {
-    std::erase_if(shapes, [id](const Shape& s) { return s.id == id || s.carrier == id; });
-    std::erase_if(states, [&](const State& s) {
-      return std::ranges::none_of(shapes, [&](const Shape& kept) { return kept.id == s.id; });
-    });
-  }
-
-  /// Of each record the one with which it moves: itself, or its clump's, which stands before it.
-  std::vector<std::size_t> movers() const {
-    std::vector<std::size_t> all(shapes.size());
-    for (std::size_t i = 0, body = 0; i < all.size(); ++i)
-      all[i] = is_part(shapes[i]) ? body : (body = i);
-    return all;
-  }
-  /// From a to b, in a periodic box the nearest image [m].
-  Vec3 way(const Vec3& a, const Vec3& b) const {
-    Vec3 d{};
+/// Takes particles out of the box and puts others into it, as the scene says for an interval.
+void change(Discs& discs, const Solid& solid, std::int64_t interval) {
+  const auto when = static_cast<double>(interval);
+  for (int i = 1; solid.has("particle" + std::to_string(i) + "_x"); ++i) {
+    const std::string p = "particle" + std::to_string(i) + "_";
+    bplbm_state s{};
+    s.id = static_cast<std::int64_t>(solid.number_or(p + "id", i));
+    if (solid.number_or(p + "until", -1.0) == when) discs.remove(s.id);
+    if (solid.number_or(p + "interval", 0.0) != when) continue;
     for (int k = 0; k < 2; ++k) {
-      const double length = box_.hi[k] - box_.lo[k];
-      d[k] = b[k] - a[k];
-      if (box_.periodic[k]) d[k] -= length * std::round(d[k] / length);
+      s.x[k] = solid.number(p + kAxes[k]);
+      s.v[k] = solid.number_or(p + "v" + kAxes[k], 0.0);
     }
-    return d;
+    discs.add(s, interval);
   }
+}
 
-  /// Half a step of the velocities.
-  void kick(std::span<const Acceleration> a) {
-    const auto mover = movers();
-    for (std::size_t i = 0; i < states.size(); ++i) {
-      State& s = states[i];
-      const State& body = states[mover[i]];
-      if (mover[i] == i) {
-        for (int k = 0; k < 2; ++k) s.v[k] += 0.5 * step_ * a[i].of_place[k];
-        s.omega[2] += 0.5 * step_ * a[i].spin;
-      } else {
-        const Vec3 arm = way(body.x, s.x);
-        s.omega = body.omega;
-        s.v = {body.v[0] - body.omega[2] * arm[1], body.v[1] + body.omega[2] * arm[0], 0.0};
-      }
-    }
-  }
-  /// A step of the places; the discs of a clump turn about its centre.
-  void drift() {
-    const std::vector<State> before = states;
-    const auto mover = movers();
-    for (std::size_t i = 0; i < states.size(); ++i) {
-      const State& body = states[mover[i]];
-      const Vec3 arm = way(before[mover[i]].x, before[i].x);
-      const double c = std::cos(step_ * body.omega[2]), s = std::sin(step_ * body.omega[2]);
-      if (mover[i] == i)
-        for (int k = 0; k < 2; ++k) states[i].x[k] += step_ * states[i].v[k];
-      else
-        states[i].x = {body.x[0] + c * arm[0] - s * arm[1], body.x[1] + s * arm[0] + c * arm[1],
-                       0.0};
-    }
-  }
+// ---- checkpoints: every path is decided by places and velocities --------------------------------
 
-  /// Force of a contact along its normal: never a pull. @param approach  speed of approach
-  double push(double overlap, double approach) const {
-    return overlap > 0.0 ? std::max(0.0, stiffness_ * overlap + damping_ * approach) : 0.0;
-  }
+constexpr char kPart[8] = {'d', 'i', 's', 'c', 's', ' ', '1', '\n'};
 
-  /// Of everything that moves by itself, from weight, loads, walls and contacts of discs.
-  std::vector<Acceleration> accelerations(std::span<const Load> loads) const {
-    std::vector<Acceleration> a(states.size());
-    const auto mover = movers();
-    const auto touch = [&](std::size_t i, const Vec3& force) {
-      const std::size_t body = mover[i];
-      const Vec3 arm = way(states[body].x, states[i].x);
-      for (int k = 0; k < 2; ++k) a[body].of_place[k] += force[k] / shapes[body].mass;
-      a[body].spin += (arm[0] * force[1] - arm[1] * force[0]) / shapes[body].inertia;
-    };
-    std::vector<std::size_t> discs;  // all that has a surface
-    for (std::size_t i = 0; i < states.size(); ++i) {
-      if (mover[i] == i) {
-        for (int k = 0; k < 2; ++k)
-          a[i].of_place[k] += gravity_[k] + loads[i].force[k] / shapes[i].mass;
-        a[i].spin += loads[i].torque[2] / shapes[i].inertia;
-      }
-      if (arms_.size() == 1 || mover[i] != i) discs.push_back(i);
-    }
-    for (std::size_t n = 0; n < discs.size(); ++n) {
-      const std::size_t i = discs[n];
-      touch(i, push_of_walls(i));
-      for (std::size_t m = 0; m < n; ++m) {
-        const std::size_t j = discs[m];
-        if (mover[i] == mover[j]) continue;
-        const Vec3 force = push_of_disc(i, j);
-        touch(i, force);
-        touch(j, {-force[0], -force[1], 0.0});
-      }
-    }
-    return a;
-  }
-  Vec3 push_of_walls(std::size_t i) const {
-    Vec3 force{};
-    const State& s = states[i];
-    for (int k = 0; k < 2; ++k)
-      if (box_.walls[k])
-        force[k] = push(shapes[i].radius - (s.x[k] - box_.lo[k]), -s.v[k]) -
-                   push(shapes[i].radius - (box_.hi[k] - s.x[k]), s.v[k]);
-    return force;
-  }
-  /// Of disc j on disc i.
-  Vec3 push_of_disc(std::size_t i, std::size_t j) const {
-    const Vec3 n = way(states[j].x, states[i].x);
-    const double distance = std::hypot(n[0], n[1]);
-    double approach = 0.0;
-    for (int k = 0; k < 2; ++k) approach -= (states[i].v[k] - states[j].v[k]) * n[k] / distance;
-    const double force = push(shapes[i].radius + shapes[j].radius - distance, approach);
-    return {force * n[0] / distance, force * n[1] / distance, 0.0};
-  }
+template <class Record>
+void append(std::string& part, const std::vector<Record>& records) {
+  part.append(reinterpret_cast<const char*>(records.data()), records.size() * sizeof(Record));
+}
 
-  bool put_into_box(State& s) const {
-    for (int k = 0; k < 2; ++k) {
-      const double length = box_.hi[k] - box_.lo[k];
-      if (box_.periodic[k])
-        s.x[k] -= length * std::floor((s.x[k] - box_.lo[k]) / length);
-      else if (s.x[k] < box_.lo[k] || s.x[k] > box_.hi[k])
-        return false;
-    }
-    return true;
-  }
+std::string part_of(const Discs& discs) {
+  std::string part(kPart, sizeof kPart);
+  append(part, discs.states);
+  append(part, discs.shapes);
+  return part;
+}
 
-  const Offer& offer_;
-  Box box_;
-  std::vector<Shape> shapes_of_one_;  ///< a disc, or a clump and its discs
-  std::vector<Vec3> arms_;            ///< of these from the centre [m]
-  Vec3 gravity_{};
-  double step_ = 0.0, stiffness_ = 0.0, damping_ = 0.0;
-};
+void read_part(const Solid& solid, Discs& discs) {
+  const std::string name = solid.text("restart_file");
+  std::ifstream file(name, std::ios::binary);
+  const std::string part{std::istreambuf_iterator<char>(file), {}};
+  constexpr std::size_t each = sizeof(bplbm_state) + sizeof(bplbm_shape);
+  if (!part.starts_with(std::string(kPart, sizeof kPart)) || (part.size() - sizeof kPart) % each)
+    solid.fail(BPLBM_BAD_INPUT, name + " is no checkpoint of this engine");
+  const std::size_t n = (part.size() - sizeof kPart) / each;
+  discs.states.resize(n);
+  discs.shapes.resize(n);
+  const char* from = part.data() + sizeof kPart;
+  std::memcpy(discs.states.data(), from, n * sizeof(bplbm_state));
+  std::memcpy(discs.shapes.data(), from + n * sizeof(bplbm_state), n * sizeof(bplbm_shape));
+}
 
-void run(Channel& channel) {
-  SolidSession session(channel, 60.0);
-  limit_waits(session.timeout());
-  const Hello& fluid = session.fluid();
-  const Offer offer(fluid);
-  Discs discs(fluid, offer);
-  Hello hello;  // from what this program was told to do, not a copy of the fluid's
-  hello.role = Role::Solid;
-  hello.program = "reference_engine";
-  hello.program_version = BPLBM_VERSION;
-  hello.dimension = 2;
-  hello.box_lo = discs.box().lo;
-  hello.box_hi = discs.box().hi;
-  hello.periodic = {discs.box().periodic[0], discs.box().periodic[1], 1};
-  hello.depth = offer.number("depth");
-  hello.gravity = discs.gravity();
-  hello.buoyancy = fluid.buoyancy == Buoyancy::None ? Buoyancy::None : Buoyancy::ByFluid;
-  hello.step = discs.step();
-  hello.solid_steps = static_cast<std::uint32_t>(offer.number("substeps"));
-  hello.particles = discs.bodies();
-  hello.first_interval = fluid.first_interval;
-  hello.features = kCheckpoints;
-  hello.sides.emplace();
-  for (int k = 0; k < 2; ++k)
-    if (discs.box().walls[k]) (*hello.sides)[2 * k] = (*hello.sides)[2 * k + 1] = SideWall::Whole;
-  session.agree(hello);
-  SolidParts parts = SolidParts::of(fluid);
-  StepHeader head{fluid.first_interval, 0.0, kContinue};
-  for (;; ++head.interval) {
-    head.time = static_cast<double>(head.interval) * hello.step * hello.solid_steps;
-    if (head.interval > fluid.first_interval) discs.insert(static_cast<int>(head.interval));
-    if (signalled()) head.flags |= kStopWished;
-    if (head.flags & kCheckpoint) parts.keep(head.interval, discs.checkpoint(head));
-    const auto reply = session.exchange(head, discs.states, discs.shapes);
-    if (head.flags & kLast) return;
-    head.flags = (reply.flags & kStop ? kLast : 0U) | (reply.flags & kCheckpoint);
-    discs.advance(hello.solid_steps, reply.loads);
+// ---- the conversation ---------------------------------------------------------------------------
+
+void run(const Solid& solid) {
+  const Box box = read_box(solid);
+  const Kind kind = read_kind(solid, box);
+  bplbm_setup setup = setup_of(solid, box, kind);
+  Discs discs(box, kind, setup.step);
+  std::int64_t interval = setup.first_interval;
+  if (interval > 0)
+    read_part(solid, discs);
+  else
+    change(discs, solid, 0);
+  setup.particles = discs.bodies();
+  solid.agree(setup);
+  std::vector<bplbm_load> loads;
+  for (;;) {
+    const std::uint32_t asked = solid.exchange(discs.states, discs.shapes, loads);
+    if (asked & BPLBM_LAST) return;
+    discs.advance(setup.steps, loads);
+    change(discs, solid, ++interval);
+    if (asked & BPLBM_CHECKPOINT) solid.keep(part_of(discs));
   }
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  {
-    const MpiStart bounded("reference_engine");
-    MPI_Init(&argc, &argv);
-  }
-  catch_signals();
-  std::unique_ptr<Channel> channel;
-  World world;
-  int code = kOk;
+int main() {
+  Solid solid("reference_engine", BPLBM_VERSION);
   try {
-    world = connect(Role::Solid);
-    if (!world.coupled())
-      throw ProgramError(
-          "no fluid program was started beside it; start: mpirun -np 1 lbm scene.toml : -np 1 "
-          "reference_engine",
-          kBadInput);
-    channel = make_mpi_channel(world, Role::Solid);
-    run(*channel);
+    run(solid);
   } catch (const std::exception& error) {
-    code = leave_after(error, "reference_engine", channel.get());
+    solid.note(BPLBM_FAULT, error.what());
   }
-  return finish(code, "reference_engine", channel, world.local);
+  return solid.close();
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "liggghts_coupling/host/solid_hello.h"
+#include "liggghts_coupling/host/solid_handshake.h"
 
 #include <atom.h>
 #include <comm.h>
 #include <domain.h>
 #include <error.h>
 #include <fix_gravity.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <modify.h>
 #include <update.h>
 
@@ -25,11 +25,11 @@ double particle_volume(int dimension, double radius, double depth) {
   return dimension == 2 ? disc * depth : disc * radius * 4.0 / 3.0;
 }
 
-SolidHello::SolidHello(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps,
-                       const ScriptClumps& clumps)
+SolidHandshake::SolidHandshake(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps,
+                               const ScriptClumps& clumps)
     : Pointers(lammps), groupbit_(groupbit), substeps_(substeps), clumps_(clumps) {}
 
-Hello SolidHello::collect() {
+Hello SolidHandshake::collect() {
   Hello hello;
   hello.role = protocol::Role::Solid;
   hello.program = "liggghts";
@@ -45,7 +45,7 @@ Hello SolidHello::collect() {
 }
 
 /// A script that forgets its integrator runs to the end, and nothing moves.
-void SolidHello::expect_motion() const {
+void SolidHandshake::expect_motion() const {
   if (clumps_.multisphere()) return;
   for (int i = 0; i < modify->nfix; ++i)
     if (modify->fix[i]->time_integrate) return;
@@ -55,7 +55,7 @@ void SolidHello::expect_motion() const {
                "where they are; add fix ID all nve/sphere\n");
 }
 
-void SolidHello::geometry(Hello& hello) const {
+void SolidHandshake::geometry(Hello& hello) const {
   if (domain->triclinic)
     error->all(FLERR, "fix lbm/couple: a triclinic box cannot couple; use an orthogonal region");
   if (domain->nonperiodic == 2)
@@ -69,7 +69,7 @@ void SolidHello::geometry(Hello& hello) const {
   hello.depth = hello.box_hi[2] - hello.box_lo[2];
 }
 
-void SolidHello::forces(Hello& hello) const {
+void SolidHandshake::forces(Hello& hello) const {
   bool buoyancy = false;
   for (int i = 0; i < modify->nfix; ++i) {
     if (std::string(modify->fix[i]->style) == "buoyancy") buoyancy = true;
@@ -84,7 +84,7 @@ void SolidHello::forces(Hello& hello) const {
   hello.buoyancy = buoyancy ? protocol::Buoyancy::BySolid : fluid_says;
 }
 
-void SolidHello::particles(Hello& hello) const {
+void SolidHandshake::particles(Hello& hello) const {
   constexpr double huge = std::numeric_limits<double>::max();
   double least[3] = {huge, huge, huge};
   double most[3] = {0.0, 0.0, -huge};

@@ -26,10 +26,10 @@ void write_meshes(const Scene& scene, const std::string& folder);
 /// What the fluid says to the solid: everything of the plan that both must agree on, and the
 /// variables that its script may use instead of numbers of its own.
 /// @param cells  of this rank, where several share the box
-protocol::Hello make_hello(const Scene& scene, const Plan& plan, const RunStart& start = {},
-                           const std::optional<Block>& cells = {});
+protocol::Hello make_handshake(const Scene& scene, const Plan& plan, const RunStart& start = {},
+                               const std::optional<Block>& cells = {});
 /// Its subdomain is that of these cells.
 void set_subdomain(const Units& units, const Domain& domain, const Block& cells,
-                   protocol::Hello& hello);
+                   protocol::Hello& handshake);
 
 }  // namespace lbm

@@ -9,9 +9,9 @@
 namespace dem {
 
 /// Reads from a set-up LIGGGHTS what the fluid must agree on.
-class SolidHello : protected LAMMPS_NS::Pointers {
+class SolidHandshake : protected LAMMPS_NS::Pointers {
  public:
-  SolidHello(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps, const ScriptClumps& clumps);
+  SolidHandshake(LAMMPS_NS::LAMMPS* lammps, int groupbit, int substeps, const ScriptClumps& clumps);
 
   /// Collective over the DEM ranks. Fails with LIGGGHTS' own error where the set-up cannot couple.
   protocol::Hello collect();
