@@ -312,8 +312,7 @@ void Observers::add_bonds(const std::vector<protocol::Particle>& particles,
   }
 }
 
-/// All particles of the box. LIGGGHTS wraps places at periodic sides only now and then: what is
-/// written lies in the box.
+/// All particles, inside the box: LIGGGHTS wraps places at periodic sides only now and then.
 Particles::Everything Observers::shown(const Particles& particles) const {
   Particles::Everything all = particles.gather();
   hide_hulls(all.particles);
