@@ -43,6 +43,8 @@ damping_ratio = 0.5
 [numerics]
 cell = {cell}
 {blocks}
+[coupling]
+timeout = 300.0
 [run]
 end_time = {end}
 [output]
