@@ -83,16 +83,6 @@ std::map<std::string, double> scene_parameters(const Scene& scene, const Plan& p
 
 }  // namespace
 
-void PartClock::charge(const char* part) {
-  const auto now = Clock::now();
-  seconds_[part] += std::chrono::duration<double>(now - last_).count();
-  last_ = now;
-}
-
-double PartClock::total() const {
-  return std::chrono::duration<double>(last_ - start_).count();
-}
-
 Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                      const std::string& folder, Log& log, std::int64_t first)
     : scene_(scene),
@@ -197,6 +187,13 @@ Record Observers::save() const {
     record.set("sensor_" + scene_.output.sensors[i].name, sensors_[i]->save());
   if (average_) record.set("average", average_->save());
   return record;
+}
+
+void Observers::move_to(const Decomposition& ranks) {
+  ranks_ = ranks;
+  for (const auto& sensor : sensors_) sensor->move_to(ranks);
+  if (obstacles_) obstacles_->move_to(ranks);
+  if (average_) average_->move_to(ranks);
 }
 
 void Observers::load(const Record& record) {
@@ -315,8 +312,7 @@ void Observers::add_bonds(const std::vector<protocol::Particle>& particles,
   }
 }
 
-/// All particles of the box. LIGGGHTS wraps places at periodic sides only now and then: what is
-/// written lies in the box.
+/// All particles, inside the box: LIGGGHTS wraps places at periodic sides only now and then.
 Particles::Everything Observers::shown(const Particles& particles) const {
   Particles::Everything all = particles.gather();
   hide_hulls(all.particles);
@@ -374,29 +370,27 @@ std::string Observers::speed_text() const {
 
 Summary Observers::summary(double wall_seconds) const {
   Summary s;
-  const long cells = static_cast<long>(plan_.domain.nx) * plan_.domain.ny * plan_.domain.nz;
-  s.cells = cells;
+  s.cells = static_cast<long>(plan_.domain.nx) * plan_.domain.ny * plan_.domain.nz;
   s.steps = static_cast<long>(intervals_done_) * plan_.fluid_steps;
   s.substeps = plan_.substeps;
   s.physical_seconds = time_of(intervals_done_);
   s.wall_seconds = wall_seconds;
-  s.mlups = static_cast<double>(cells) * static_cast<double>(intervals_done_ - first_) *
+  s.mlups = static_cast<double>(s.cells) * static_cast<double>(intervals_done_ - first_) *
             plan_.fluid_steps / wall_seconds * 1e-6;
   s.writing = writing_;
   s.ma_max = max_speed_ * std::numbers::sqrt3;
   s.ma_paper = max_speed_;
   s.re = plan_.reynolds;
   s.re_h = plan_.reynolds_cell;
-  s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(cells);
+  s.mass_drift = (mass_excess_ - first_mass_excess_) / static_cast<double>(s.cells);
   s.parameters = scene_parameters(scene_, plan_);
   if (flow_) flow_->describe(s.parameters);
-  if (viscosity_) {
-    s.parameters["share_at_rest_bound"] = viscosity_->at_rest_bound;
-    s.parameters["share_at_shear_bound"] = viscosity_->at_shear_bound;
-    s.parameters["shear_rate_max"] = viscosity_->largest_shear / plan_.units.dt;
-    s.parameters["mean_viscosity"] =
-        viscosity_->mean_viscosity * plan_.units.dx * plan_.units.dx / plan_.units.dt;
-  }
+  if (!viscosity_) return s;
+  const double unit = plan_.units.dx * plan_.units.dx / plan_.units.dt;
+  s.parameters.insert({{"share_at_rest_bound", viscosity_->at_rest_bound},
+                       {"share_at_shear_bound", viscosity_->at_shear_bound},
+                       {"shear_rate_max", viscosity_->largest_shear / plan_.units.dt},
+                       {"mean_viscosity", viscosity_->mean_viscosity * unit}});
   return s;
 }
 

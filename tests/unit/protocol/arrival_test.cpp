@@ -189,9 +189,7 @@ std::vector<Change> later_changes() {
        [](StateBatch& b) { b.shapes = {shape(6)}; },
        {"a shape of particle 6 came at interval 1, but no state"}},
       {"two_shapes",
-       [](StateBatch& b) {
-         b.shapes = {shape(5), shape(5)};
-       },
+       [](StateBatch& b) { b.shapes.assign(2, shape(5)); },
        {"two shapes of particle 5"}},
       {"late_and_small",
        [](StateBatch& b) {
