@@ -173,6 +173,7 @@ struct NumericsScene {
   double smagorinsky = 0.0;         ///< S_c; 0: no turbulence model
   bool wale = false;                ///< its eddy viscosity adapts to walls
   bool equal_work = false;          ///< blocks of the ranks: of equal work instead of equal size
+  double waiting_bound = 0.1;       ///< share of waiting above which those are cut anew
 };
 
 struct ParticleScene {

@@ -18,6 +18,11 @@ FieldAverage::FieldAverage(const AverageScene& scene, const Plan& plan, const De
     : ranks_(ranks),
       times_(scene.every, plan.interval()),
       first_(first_state(scene.from, plan.interval())) {
+  move_to(ranks);
+}
+
+void FieldAverage::move_to(const Decomposition& ranks) {
+  ranks_ = ranks;
   const Cell3& n = ranks.cells().size;
   const std::size_t cells = static_cast<std::size_t>(n[0]) * n[1] * n[2];
   for (Moments* m : {&velocity_[0], &velocity_[1], &velocity_[2], &pressure_}) {

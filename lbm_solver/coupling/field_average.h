@@ -32,6 +32,8 @@ class FieldAverage {
   Record save() const;
   /// @throws std::invalid_argument where it is of another box
   void load(const Record& record);
+  /// See Observers. What was summed so far is lost until `load`.
+  void move_to(const Decomposition& ranks);
 
  private:
   /// Mean and sum of squares of deviations of one quantity in each cell of this rank.
@@ -41,7 +43,7 @@ class FieldAverage {
   };
   void fill(const CellRange& piece, std::span<float> to, const Units& units, double count) const;
 
-  const Decomposition ranks_;
+  Decomposition ranks_;
   const OutputTimes times_;
   std::int64_t first_ = 0;  // state from which on
   std::int64_t samples_ = 0;

@@ -121,11 +121,7 @@ void add_subdomain(const Scene& s, const Plan& plan, const std::optional<Block>&
                    protocol::Hello& h) {
   h.subdomain_lo = h.box_lo;
   h.subdomain_hi = h.box_hi;
-  for (int k = 0; cells && k < s.box.dimension; ++k) {
-    h.subdomain_lo[k] = s.box.origin[k] + plan.units.dx * cells->begin[k];
-    if (cells->begin[k] + cells->size[k] < plan.domain.cells()[k])
-      h.subdomain_hi[k] = s.box.origin[k] + plan.units.dx * (cells->begin[k] + cells->size[k]);
-  }
+  if (cells) set_subdomain(plan.units, plan.domain, *cells, h);
   h.reach = std::max(2.0, s.coupling->lubrication_range) * plan.units.dx;
 }
 
@@ -194,6 +190,16 @@ void write_meshes(const Scene& s, const std::string& folder) {
   const auto meshes = meshes_of(s);
   for (std::size_t i = 0; i < meshes.size(); ++i)
     write_stl(mesh_file(folder, i + 1), *meshes[i]->mesh->surface);
+}
+
+void set_subdomain(const Units& units, const Domain& domain, const Block& cells,
+                   protocol::Hello& handshake) {
+  for (int k = 0; k < domain.dimension(); ++k) {
+    const int end = cells.begin[k] + cells.size[k];
+    handshake.subdomain_lo[k] = units.origin[k] + units.dx * cells.begin[k];
+    handshake.subdomain_hi[k] =
+        end < domain.cells()[k] ? units.origin[k] + units.dx * end : handshake.box_hi[k];
+  }
 }
 
 protocol::Hello make_handshake(const Scene& s, const Plan& plan, const RunStart& start,

@@ -28,5 +28,8 @@ void write_meshes(const Scene& scene, const std::string& folder);
 /// @param cells  of this rank, where several share the box
 protocol::Hello make_handshake(const Scene& scene, const Plan& plan, const RunStart& start = {},
                                const std::optional<Block>& cells = {});
+/// Its subdomain is that of these cells.
+void set_subdomain(const Units& units, const Domain& domain, const Block& cells,
+                   protocol::Hello& handshake);
 
 }  // namespace lbm

@@ -83,16 +83,6 @@ std::map<std::string, double> scene_parameters(const Scene& scene, const Plan& p
 
 }  // namespace
 
-void PartClock::charge(const char* part) {
-  const auto now = Clock::now();
-  seconds_[part] += std::chrono::duration<double>(now - last_).count();
-  last_ = now;
-}
-
-double PartClock::total() const {
-  return std::chrono::duration<double>(last_ - start_).count();
-}
-
 Observers::Observers(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                      const std::string& folder, Log& log, std::int64_t first)
     : scene_(scene),
@@ -197,6 +187,13 @@ Record Observers::save() const {
     record.set("sensor_" + scene_.output.sensors[i].name, sensors_[i]->save());
   if (average_) record.set("average", average_->save());
   return record;
+}
+
+void Observers::move_to(const Decomposition& ranks) {
+  ranks_ = ranks;
+  for (const auto& sensor : sensors_) sensor->move_to(ranks);
+  if (obstacles_) obstacles_->move_to(ranks);
+  if (average_) average_->move_to(ranks);
 }
 
 void Observers::load(const Record& record) {

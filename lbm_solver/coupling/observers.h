@@ -12,6 +12,7 @@
 #include "lbm_solver/coupling/held_flow.h"
 #include "lbm_solver/coupling/obstacle_loads.h"
 #include "lbm_solver/coupling/output_times.h"
+#include "lbm_solver/coupling/part_clock.h"
 #include "lbm_solver/coupling/particles.h"
 #include "lbm_solver/coupling/sensors.h"
 #include "lbm_solver/coupling/steady_watch.h"
@@ -23,20 +24,6 @@
 #include "lbm_solver/solver/viscosity_use.h"
 
 namespace lbm {
-
-/// Wall time by part of the time step.
-class PartClock {
- public:
-  /// Charges the time since the last call to `part`.
-  void charge(const char* part);
-  double total() const;
-  const std::map<std::string, double>& parts() const { return seconds_; }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now(), last_ = start_;
-  std::map<std::string, double> seconds_;
-};
 
 /// Everything that watches a run without changing it: guard, probes, fields, progress, summary.
 /// What belongs to a state (fields, points, particles' motion) is written at that state, the first
@@ -57,6 +44,8 @@ class Observers {
   /// rank. To be asked for before `at_state`, which the run that goes on calls again. Collective.
   Record save() const;
   void load(const Record& record);
+  /// The ranks have other blocks from now on; before `load` of what was saved on those before.
+  void move_to(const Decomposition& ranks);
 
   /// A picture of the fields is due at this state.
   bool draws_at(std::int64_t state) const { return field_times_ && field_times_->due(state); }
@@ -106,7 +95,7 @@ class Observers {
 
   const Scene& scene_;
   const Plan& plan_;
-  const Decomposition ranks_;
+  Decomposition ranks_;
   Log& log_;
   const OutputTimes probe_times_;
   std::optional<OutputTimes> field_times_;  // where fields are asked for

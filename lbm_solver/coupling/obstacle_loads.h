@@ -33,13 +33,18 @@ class ObstacleLoads {
   Record save() const;
   /// @throws std::invalid_argument where it is of other obstacles
   void load(const Record& record);
+  /// See Observers.
+  void move_to(const Decomposition& ranks) {
+    ranks_ = ranks;
+    blocks_.reset();
+  }
 
  private:
   std::vector<BodyLoad> whole() const;
   Vec3 arm_of(std::size_t body, std::int64_t step) const;
 
   const Units units_;
-  const Decomposition ranks_;
+  Decomposition ranks_;
   std::optional<CsvWriter> table_;  // of rank 0
   std::vector<int> line_;           // [round obstacle]: into sums_
   std::vector<int> block_line_;     // [block]: into sums_

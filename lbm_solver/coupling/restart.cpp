@@ -24,9 +24,15 @@ using Settings = std::map<std::string, std::string>;
 constexpr const char* kBeginAnew = "start again without --restart";
 
 /// Of output and of the run's end: nothing that the next step depends on.
-constexpr std::array kFree{
-    "title",           "run.end_time",         "run.steady_below", "output",
-    "numerics.blocks", "run.checkpoint_every", "coupling.timeout", "coupling.connect_timeout"};
+constexpr std::array kFree{"title",
+                           "run.end_time",
+                           "run.steady_below",
+                           "output",
+                           "numerics.blocks",
+                           "numerics.waiting_bound",
+                           "run.checkpoint_every",
+                           "coupling.timeout",
+                           "coupling.connect_timeout"};
 /// Of what drives the run: the state fits whatever they are.
 constexpr std::array kAcceptable{"fluid.gravity",
                                  "fluid.body_force",

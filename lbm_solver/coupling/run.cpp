@@ -5,12 +5,16 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/coupling/block_balance.h"
 #include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/lubrication.h"
+#include "lbm_solver/coupling/particle_relay.h"
 #include "lbm_solver/coupling/run_state.h"
 #include "lbm_solver/coupling/stop_times.h"
+#include "lbm_solver/field/moved_record.h"
 #include "lbm_solver/io/checkpoint.h"
 #include "lbm_solver/io/script_variables.h"
 #include "protocol/program/program.h"
@@ -19,11 +23,6 @@
 
 namespace lbm {
 namespace {
-
-std::int64_t last_interval(const Plan& plan, const RunOptions& options) {
-  if (!options.until) return plan.intervals;
-  return std::clamp<std::int64_t>(first_state(*options.until, plan.interval()), 1, plan.intervals);
-}
 
 /// Where a coupled run begins, and where its checkpoints lie.
 RunStart start_of(const RunOptions& options, const Plan& plan, const Restart* restart) {
@@ -44,22 +43,6 @@ RunStart start_of(const RunOptions& options, const Plan& plan, const Restart* re
   return start;
 }
 
-/// What is said of the checkpoint that a run goes on from.
-void say_restart(const Restart& restart, Log& log) {
-  if (restart.earlier)
-    log.say(restart.interval, "warning", "the last checkpoint is not used: {}", restart.remark);
-  log.say(restart.interval, "restart", "goes on from {}", restart.path);
-}
-
-/// Takes over a record. @throws InputError  it is of another scene or version
-template <class Load>
-void load_from(const Restart& restart, Load&& load) try {
-  load();
-} catch (const std::invalid_argument& error) {
-  throw InputError(restart.path, fmt::format("does not fit this scene: {}", error.what()),
-                   "start again without --restart");
-}
-
 /// The coupled time loop. An interval reads: states arrive, the fluid makes its steps, loads leave.
 class CoupledRun {
  public:
@@ -74,6 +57,8 @@ class CoupledRun {
         start_(start_of(options, plan, restart)),
         solid_(channel, make_handshake(scene, plan, start_, ranks.cells()),
                scene.coupling->timeout),
+        relay_(make_handshake(scene, plan, start_), plan.units, ranks),
+        balance_(scene, plan, ranks),
         fluid_(make_fluid(scene, plan, ranks)),
         bodies_(obstacle_bodies(scene, plan)),
         obstacles_(bodies_.size()),
@@ -98,9 +83,8 @@ class CoupledRun {
               partner_.program);
     if (!restart) return;
     load_from(*restart, [&] {
-      fluid_.load(restart->record.part("fluid"));
-      particles_.load(restart->record.part("particles"));
-      observers_.load(restart->record.part("observers"));
+      load(restart->record);
+      saved_particles_ = restart->record.part("particles");
     });
     say_restart(*restart, log);
   }
@@ -113,13 +97,14 @@ class CoupledRun {
       throw;
     }
     clock_.charge("output");
-    Summary summary =
-        summarise(scene_, options_.set, options_.variant, fluid_, observers_, clock_, ending_);
+    Summary summary = summarise(scene_, options_, *fluid_, observers_, clock_,
+                                waited_ + fluid_->waited(), ending_);
     summary.versions[partner_.program] = partner_.program_version;
     summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
     summary.waiting = clock_.parts().at("waiting");
     if (particles_.report()) summary.solid = *particles_.report();
-    say_busiest(scene_, fluid_, summary, log_);
+    summary.block_moves = balance_.moves();
+    say_busiest(scene_, *fluid_, summary, log_);
     if (ranks_.rank() == 0) write_summary(options_.out, summary);
     return summary;
   }
@@ -137,27 +122,67 @@ class CoupledRun {
       stop_wished_ = arrival.head.flags & protocol::kStopWished;
       const bool last = arrival.head.flags & protocol::kLast;
       // a frame may find the disk full: until it is written both still stand at this interval
-      if (times_.any() && observers_.draws_at(interval))
-        saved_particles_ = particles_.save();
-      else
+      if (!times_.any() || !observers_.draws_at(interval))
         resumable_interval_.reset();
-      particles_.arrive(arrival.particles, plan_.interval());
+      else if (!saved_particles_)
+        saved_particles_ = particles_.save();
+      particles_.arrive(relay_.arrive(arrival.particles), plan_.interval());
       particles_.tell(arrival.report);
       if (particles_.has_clumps()) expect_takes_clumps(plan_.scheme);
       if (scene_.coupling->carry_weight) carry_weight(interval);
       place(0);
-      observers_.at_state(interval, fluid_, &particles_, last);
+      observers_.at_state(interval, *fluid_, &particles_, last);
       clock_.charge("output");
       if (last) break;
       resumable_interval_.reset();
       saved_particles_.reset();
       for (int step = 0; step < plan_.fluid_steps; ++step) advance(step);
-      solid_.answer(particles_.mean_loads(plan_.fluid_steps), flags_after(interval));
+      solid_.answer(relay_.give_back(particles_.mean_loads(plan_.fluid_steps)),
+                    flags_after(interval));
       resumable_interval_ = interval + 1;
       clock_.charge("exchange");
-      observers_.after_interval(interval, fluid_, &particles_);
+      observers_.after_interval(interval, *fluid_, &particles_);
       clock_.charge("output");
+      balance_blocks(interval + 1);
     }
+  }
+
+  void load(const Record& record) {
+    fluid_->load(record.part("fluid"));
+    particles_.load(record.part("particles"));
+    observers_.load(record.part("observers"));
+  }
+
+  /// Between two intervals, while the solid makes its steps.
+  void balance_blocks(std::int64_t interval) {
+    if (interval >= end_ || !balance_.due(interval)) return;
+    const double worked = work_seconds(clock_, waited_ + fluid_->waited());
+    const std::optional<Decomposition> to = balance_.look(worked, *fluid_);
+    if (to) move_to(*to);
+    const double seconds = clock_.charge("balance");
+    if (to) log_.say(interval, "ranks", "{}", balance_.moved(seconds, ranks_));
+  }
+
+  /// Goes on with other blocks as from a checkpoint on other ranks, but in memory: at no time is
+  /// more there than the cells in two places.
+  void move_to(const Decomposition& to) {
+    const auto stands_at = std::exchange(resumable_interval_, std::nullopt);
+    Record record;
+    record.set("fluid", fluid_->save());
+    record.set("particles", particles_.save());
+    record.set("observers", observers_.save());
+    record = moved(record, ranks_, to);
+    waited_ += fluid_->waited();
+    observers_.move_to(to);
+    fluid_.reset();
+    ranks_ = to;
+    relay_.move_to(to);
+    fluid_.emplace(make_fluid(scene_, plan_, to));
+    particles_ = Particles(plan_.units, scene_, to, plan_.kernel.solid_term);
+    load(record);
+    saved_particles_ = record.part("particles");  // until the next ones arrive
+    force_is_set_ = false;
+    resumable_interval_ = stands_at;
   }
 
   /// The solid has written its part of a checkpoint.
@@ -174,12 +199,15 @@ class CoupledRun {
   void carry_weight(std::int64_t interval) {
     Vec3 weight = particles_.weight_in_fluid();
     ranks_.sum(std::span<double>(weight.data(), 3));
-    if (weight == carried_) return;
+    if (weight == carried_ && force_is_set_) return;
+    const bool news = (weight - carried_).norm() > 1e-12 * weight.norm();  // beyond round-off
     carried_ = weight;
+    force_is_set_ = true;
     const Cell3 n = plan_.domain.cells();
     const double mass = plan_.units.mass() * n[0] * n[1] * n[2];  // of fluid that filled the box
     const Vec3 force = scene_.fluid.body_force - weight / mass;
-    fluid_.set_body_force(force * (plan_.units.dt * plan_.units.dt / plan_.units.dx));
+    fluid_->set_body_force(force * (plan_.units.dt * plan_.units.dt / plan_.units.dx));
+    if (!news) return;
     log_.say(interval, "balance",
              "a body force of ({:.6g}, {:.6g}, {:.6g}) m/s² on the fluid, with "
              "which the particles' weight is carried",
@@ -189,18 +217,18 @@ class CoupledRun {
   /// Where the solids are when a step of the interval begins.
   void place(int step) {
     bodies_.resize(obstacles_);
-    if (moving_) bodies_ = obstacle_bodies(scene_, plan_, fluid_.steps());
+    if (moving_) bodies_ = obstacle_bodies(scene_, plan_, fluid_->steps());
     const auto moving = particles_.bodies(step * plan_.units.dt);
     bodies_.insert(bodies_.end(), moving.begin(), moving.end());
-    fluid_.place(bodies_);
+    fluid_->place(bodies_);
     clock_.charge("placing");
   }
 
   void advance(int step) {
     if (step > 0) place(step);
-    fluid_.step();
+    fluid_->step();
     clock_.charge("sweep");
-    std::vector<BodyLoad> loads = fluid_.loads();
+    std::vector<BodyLoad> loads = fluid_->loads();
     if (lubrication_.range > 0.0) {
       masses_.resize(obstacles_, std::numeric_limits<double>::infinity());
       const std::vector<double> moving_masses = particles_.masses();
@@ -208,7 +236,7 @@ class CoupledRun {
       lubrication_.add(bodies_, masses_, plan_.domain, ranks_.cells(), loads);
     }
     const std::span<const BodyLoad> all(loads);
-    observers_.add_loads(fluid_, all.first(obstacles_));
+    observers_.add_loads(*fluid_, all.first(obstacles_));
     particles_.add(all.subspan(obstacles_));
     clock_.charge("loads");
   }
@@ -240,7 +268,7 @@ class CoupledRun {
   void write_state(const std::string& name, std::int64_t interval, const std::string& before) {
     const bool coupled = name == "checkpoint";  // at a fault, the other may not have its part yet
     const protocol::SolidParts parts(options_.out + "/" + name);
-    Record record = state_record(scene_, plan_, fluid_, observers_, interval,
+    Record record = state_record(scene_, plan_, *fluid_, observers_, interval,
                                  coupled ? parts.name(interval) : "");
     record.set("particles", saved_particles_ ? *saved_particles_ : particles_.save());
     lbm::write_checkpoint(fluid_part(options_.out, name), record, interval, before, &ranks_);
@@ -256,7 +284,7 @@ class CoupledRun {
     if (!times_.any() || !resumable_interval_ || !everywhere) return;
     const protocol::Deadline deadline(error, "lbm");
     try {
-      if (!fluid_.extremes().finite) return;
+      if (!fluid_->extremes().finite) return;
       write_state("fault", *resumable_interval_, "");
       log_.say(*resumable_interval_, "fault", "the fluid's last state is kept in {}/fault.h5",
                options_.out);
@@ -268,13 +296,16 @@ class CoupledRun {
 
   const Scene& scene_;
   const Plan& plan_;
-  const Decomposition& ranks_;
+  Decomposition ranks_;
   const RunOptions& options_;
   Log& log_;
   const RunStart start_;
   protocol::FluidSession solid_;
-  Fluid fluid_;
-  std::vector<Body> bodies_;  // obstacles first, then the particles
+  ParticleRelay relay_;
+  BlockBalance balance_;
+  std::optional<Fluid> fluid_;  // of the present blocks
+  double waited_ = 0.0;         // for neighbours, in the blocks before [s]
+  std::vector<Body> bodies_;    // obstacles first, then the particles
   const std::size_t obstacles_;
   const bool moving_ = has_moving_bodies(scene_);  // any of the obstacles
   Particles particles_;
@@ -290,6 +321,7 @@ class CoupledRun {
   std::optional<std::int64_t> resumable_interval_ =
       start_.interval;           // no part of an interval is done
   Vec3 carried_ = Vec3::Zero();  // weight of the particles in the fluid [N]
+  bool force_is_set_ = true;     // that carries it
   std::optional<Record>
       saved_particles_;  // of particles_ before those of resumable_interval_ arrived
   std::string ending_ = "complete";
@@ -312,70 +344,6 @@ Summary run_coupled(const Scene& scene, const Plan& plan, const Decomposition& r
                     const Restart* restart) {
   if (ranks.rank() == 0) write_meshes(scene, options.out);  // before the solid is told their names
   return CoupledRun(scene, plan, ranks, channel, options, log, restart).run();
-}
-
-Summary run_alone(const Scene& scene, const Plan& plan, const Decomposition& ranks,
-                  const RunOptions& options, Log& log, const Restart* restart) {
-  if (ranks.rank() == 0) write_meshes(scene, options.out);
-  Fluid fluid = make_fluid(scene, plan, ranks);
-  if (restart) load_from(*restart, [&] { fluid.load(restart->record.part("fluid")); });
-  Observers observers(scene, plan, ranks, options.out, log, fluid.steps());
-  if (restart) {
-    load_from(*restart, [&] { observers.load(restart->record.part("observers")); });
-    say_restart(*restart, log);
-  }
-  const std::int64_t end = last_interval(plan, options);
-  observers.ends_at(end);
-  const StopTimes times(scene, plan);
-  std::string ending = "complete";
-  PartClock clock;
-  const std::int64_t first = fluid.steps();
-  bool keep_last = !restart || !restart->earlier;
-  const auto write_state = [&](std::int64_t step) {
-    clock.charge("output");
-    const Record record = state_record(scene, plan, fluid, observers, step, "");
-    write_checkpoint(fluid_part(options.out, "checkpoint"), record, step,
-                     keep_last ? fluid_part_before(options.out, "checkpoint") : "", &ranks);
-    keep_last = true;
-    clock.charge("checkpoint");
-  };
-  Fluid::AfterStep add_loads;
-  if (observers.sums())
-    add_loads = [&] {
-      clock.charge("sweep");
-      observers.add_loads(fluid, scene.obstacles.empty() ? std::vector<BodyLoad>() : fluid.loads());
-      clock.charge("loads");
-    };
-  const bool moving = has_moving_bodies(scene);
-  for (std::int64_t step = first;; step = fluid.steps()) {
-    if (moving) fluid.place(obstacle_bodies(scene, plan, step));
-    fluid.move_shapes();
-    const bool signalled = ranks.max(protocol::signalled() ? 1.0 : 0.0) > 0.0;
-    if (signalled)
-      ending = "stopped by a signal";
-    else if (observers.steady())
-      ending = fmt::format("steady: the velocity changes by less than {} a turnover",
-                           scene.steady_below);
-    const bool last = step >= end || signalled || observers.steady();
-    if (times.any() && step > first && (times.checkpoint(step) || signalled)) write_state(step);
-    observers.at_state(step, fluid, nullptr, last);
-    clock.charge("output");
-    if (last) break;
-    std::int64_t next = std::min(observers.next_look(step), end);
-    if (times.any()) next = std::min(next, times.next_checkpoint(step));
-    for (; moving && fluid.steps() < next - 1;
-         fluid.place(obstacle_bodies(scene, plan, fluid.steps())))
-      fluid.advance(1, add_loads);
-    fluid.advance(next - fluid.steps(), add_loads);
-    clock.charge("sweep");
-    observers.after_interval(next - 1, fluid, nullptr);
-    clock.charge("output");
-  }
-  const Summary summary =
-      summarise(scene, options.set, options.variant, fluid, observers, clock, ending);
-  say_busiest(scene, fluid, summary, log);
-  if (ranks.rank() == 0) write_summary(options.out, summary);
-  return summary;
 }
 
 }  // namespace lbm

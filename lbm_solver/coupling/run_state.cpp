@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/coupling/run_state.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <ctime>
@@ -23,15 +24,6 @@ double peak_memory() {
   return 0.0;
 }
 
-/// Seconds that this rank has worked in its steps.
-double work_seconds(const Fluid& fluid, const PartClock& clock) {
-  double seconds = -fluid.waited();
-  for (const char* part : {"sweep", "placing", "loads"})
-    if (const auto found = clock.parts().find(part); found != clock.parts().end())
-      seconds += found->second;
-  return seconds;
-}
-
 /// Largest over the ranks, and sum. Collective.
 std::array<double, 2> most_and_sum(const Decomposition& ranks, double mine) {
   std::array<double, 1> sum{mine};
@@ -40,6 +32,25 @@ std::array<double, 2> most_and_sum(const Decomposition& ranks, double mine) {
 }
 
 }  // namespace
+
+std::int64_t last_interval(const Plan& plan, const RunOptions& options) {
+  if (!options.until) return plan.intervals;
+  return std::clamp<std::int64_t>(first_state(*options.until, plan.interval()), 1, plan.intervals);
+}
+
+void say_restart(const Restart& restart, Log& log) {
+  if (restart.earlier)
+    log.say(restart.interval, "warning", "the last checkpoint is not used: {}", restart.remark);
+  log.say(restart.interval, "restart", "goes on from {}", restart.path);
+}
+
+double work_seconds(const PartClock& clock, double waited) {
+  double seconds = -waited;
+  for (const char* part : {"sweep", "placing", "loads"})
+    if (const auto found = clock.parts().find(part); found != clock.parts().end())
+      seconds += found->second;
+  return seconds;
+}
 
 Record state_record(const Scene& scene, const Plan& plan, const Fluid& fluid,
                     const Observers& observers, std::int64_t interval,
@@ -52,13 +63,13 @@ Record state_record(const Scene& scene, const Plan& plan, const Fluid& fluid,
   return record;
 }
 
-Summary summarise(const Scene& scene, const std::string& set, const std::string& variant,
-                  const Fluid& fluid, const Observers& observers, const PartClock& clock,
+Summary summarise(const Scene& scene, const RunOptions& options, const Fluid& fluid,
+                  const Observers& observers, const PartClock& clock, double waited,
                   const std::string& ending) {
   Summary summary = observers.summary(clock.total());
   summary.scene = scene.title;
-  summary.set = set;
-  summary.variant = variant;
+  summary.set = options.set;
+  summary.variant = options.variant;
   summary.versions["lbm"] = BPLBM_VERSION;
   summary.ending = ending;
   summary.cpu_seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -71,7 +82,7 @@ Summary summarise(const Scene& scene, const std::string& set, const std::string&
   const auto [largest, all] = most_and_sum(fluid.ranks(), peak);
   summary.peak_megabytes = {
       {"first_rank", 1e-6 * peak}, {"largest", 1e-6 * largest}, {"all", 1e-6 * all}};
-  const auto [busiest, work] = most_and_sum(fluid.ranks(), work_seconds(fluid, clock));
+  const auto [busiest, work] = most_and_sum(fluid.ranks(), work_seconds(clock, waited));
   if (work > 0.0) summary.busiest_rank = busiest * fluid.ranks().size() / work;
   return summary;
 }
@@ -83,8 +94,7 @@ void say_busiest(const Scene& scene, const Fluid& fluid, const Summary& summary,
           summary.busiest_rank,
           scene.numerics.equal_work || !fluid.has_solids()
               ? "are the cores shared with other jobs?"
-              : "numerics.blocks = \"equal_work\" moves the cuts to where the solids are known to "
-                "be at the start, and with --restart to where they are");
+              : "numerics.blocks = \"equal_work\" moves the cuts to where the solids are");
 }
 
 }  // namespace lbm

@@ -133,6 +133,10 @@ class SideSensor final : public Sensor {
     sum_ = {sum[0], sum[1], sum[2]};
     steps_ = static_cast<int>(record.integer("steps"));
   }
+  void move_to(const Decomposition& ranks) override {
+    Sensor::move_to(ranks);
+    loads_.reset();
+  }
 
  private:
   std::unique_ptr<SideLoads> loads_;  // from the first step on

@@ -31,6 +31,8 @@ class Sensor {
   virtual Record save() const { return {}; }
   /// @throws std::invalid_argument where it is of another sensor
   virtual void load(const Record&) {}
+  /// See Observers.
+  virtual void move_to(const Decomposition& ranks) { ranks_ = ranks; }
 
  protected:
   void open_table(const std::string& columns);
@@ -38,7 +40,7 @@ class Sensor {
   const SensorScene scene_;
   const BoxScene box_;
   const Units units_;
-  const Decomposition ranks_;
+  Decomposition ranks_;
   std::unique_ptr<CsvWriter> table_;  // of rank 0
 
  private:

@@ -146,8 +146,11 @@ constexpr Meaning kMeanings[] = {
      "Weight B of operators that have one; auto takes viscous, in three dimensions balanced "
      "(solids.md)."},
     {"numerics.blocks",
-     "Blocks of the ranks: of equal size or of equal work, as far as it is known at the start "
-     "(parallel.md)."},
+     "Blocks of the ranks: of equal size or of equal work, as it is known at the start and as the "
+     "solids move (parallel.md)."},
+    {"numerics.waiting_bound",
+     "Share of their time that ranks may wait for the busiest one before blocks of equal work are "
+     "cut anew; 0: whenever the covered cells give other cuts, 1: never (parallel.md)."},
     {"numerics.smagorinsky", "Constant S_c of the turbulence model; 0 leaves it out."},
     {"numerics.eddy_viscosity",
      "wale: it vanishes at walls and solids as it should (viscosity.md); S_c stays its strength."},

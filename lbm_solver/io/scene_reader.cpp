@@ -102,6 +102,7 @@ NumericsScene read_numerics(TableReader t, int d) {
   n.spring_stiffness = t.number_or("spring_stiffness", n.spring_stiffness, Bounds::positive(), "");
   n.weight = t.choice_or("weight", n.weight, {"auto", "viscous", "balanced", "fraction"});
   n.equal_work = t.choice_or("blocks", "equal", {"equal", "equal_work"}) == "equal_work";
+  n.waiting_bound = t.number_or("waiting_bound", n.waiting_bound, {0.0, 1.0}, "");
   n.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
   n.wale = t.choice_or("eddy_viscosity", "smagorinsky", {"smagorinsky", "wale"}) == "wale";
   n.magic = t.optional_number("magic", {1e-6, 10.0}, "");

@@ -25,6 +25,7 @@ struct Summary {
   /// Most memory that the first rank, any and all of them had, with what the system counts in.
   std::map<std::string, double> peak_megabytes;
   double busiest_rank = 1.0;              ///< work of the busiest rank over the mean; 1 on one
+  int block_moves = 0;                    ///< times that blocks of equal work were cut anew
   std::map<std::string, double> writing;  ///< kind of file -> seconds
   double waiting = 0.0;                   ///< seconds spent waiting for the solid
   double ma_max = 0.0;                    ///< max |u| / c_s

@@ -100,7 +100,7 @@ double imbalance(const Decomposition& ranks, const LayerWork& work) {
   return product;
 }
 
-std::string describe_blocks(const Decomposition& ranks, const LayerWork& work) {
+std::string cuts_text(const Decomposition& ranks) {
   std::string text;
   for (int a = 0; a < 3; ++a) {
     const std::vector<int>& cuts = ranks.cuts()[a];
@@ -108,9 +108,13 @@ std::string describe_blocks(const Decomposition& ranks, const LayerWork& work) {
     text += fmt::format(", cut along {} at", kAxes[a]);
     for (std::size_t p = 1; p + 1 < cuts.size(); ++p) text += fmt::format(" {}", cuts[p]);
   }
+  return text;
+}
+
+std::string describe_blocks(const Decomposition& ranks, const LayerWork& work) {
   const Decomposition equal(ranks.domain(), ranks.comm(), ranks.grid());
   return fmt::format("{}: about {:.2f} of the mean work for the busiest, {:.2f} in equal blocks",
-                     text, imbalance(ranks, work), imbalance(equal, work));
+                     cuts_text(ranks), imbalance(ranks, work), imbalance(equal, work));
 }
 
 }  // namespace lbm

@@ -28,7 +28,9 @@ Decomposition of_equal_work(const Decomposition& ranks, const LayerWork& work);
 /// Work of the busiest block over the mean, as the layers tell it.
 double imbalance(const Decomposition& ranks, const LayerWork& work);
 
-/// What the log says of it.
+/// ", cut along z at 12 30": where the blocks end.
+std::string cuts_text(const Decomposition& ranks);
+/// What the log says of blocks and their work.
 std::string describe_blocks(const Decomposition& ranks, const LayerWork& work);
 
 }  // namespace lbm

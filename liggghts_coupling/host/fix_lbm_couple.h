@@ -91,6 +91,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
   void begin_anew_where_moved() const;
   void begin_recording(const std::string& record) const;
   void count_leaving();
+  void advise_on_ranks() const;
   void note_particles();
   protocol::Hello hello() const;
   [[noreturn]] void fail(const std::string& text) const;
@@ -104,6 +105,7 @@ class FixLbmCouple final : public LAMMPS_NS::Fix, private protocol::Engine {
   LAMMPS_NS::bigint marked_ = -1;  ///< step of which places are kept
   double time_step_ = 0.0;         ///< [s], of all runs
   double waited_before_ = 0.0;     ///< [s], until the first step
+  double counted_ = 0.0;           ///< particles of this rank, summed over the intervals
   std::int64_t left_ = 0;  ///< particles, since the beginning of the coupled run, of this process
   std::set<std::int64_t> left_clumps_;  ///< those of all processes that count among them
   /// Smallest and largest of each type that was there when a run began, where the scene has

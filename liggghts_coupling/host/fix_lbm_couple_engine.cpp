@@ -9,6 +9,7 @@
 #include <neighbor.h>
 #include <update.h>
 
+#include <array>
 #include <numeric>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "liggghts_coupling/bond/leaving.h"
 #include "liggghts_coupling/host/coupling.h"
 #include "liggghts_coupling/host/fix_lbm_couple.h"
+#include "liggghts_coupling/host/rank_grid.h"
 #include "liggghts_coupling/host/script_checks.h"
 #include "liggghts_coupling/host/solid_handshake.h"
 
@@ -108,9 +110,34 @@ std::optional<protocol::SolidReport> FixLbmCouple::report() const {
 
 void FixLbmCouple::note_wishes(std::uint32_t flags) {
   bonds_->list_wanted = flags & protocol::kWantBonds;
+  counted_ += atom->nlocal;
+}
+
+/// Debian's LIGGGHTS cannot move the borders between its ranks. So a packing that lies in a part of
+/// the box is shared as well as a grid of ranks can; where another would do better, the log says
+/// so.
+void FixLbmCouple::advise_on_ranks() const {
+  if (comm->nprocs == 1) return;
+  const std::vector<RankGrid> grids = grids_of(comm->nprocs, domain->dimension);
+  std::vector<double> counts(grids.size() * static_cast<std::size_t>(comm->nprocs), 0.0);
+  for (int i = 0; i < atom->nlocal; ++i) {
+    std::array<double, 3> at{};
+    for (int k = 0; k < 3; ++k) at[k] = (atom->x[i][k] - domain->boxlo[k]) / domain->prd[k];
+    count_place(grids, at, counts);
+  }
+  std::vector<double> owned(static_cast<std::size_t>(comm->nprocs), 0.0);
+  owned[static_cast<std::size_t>(comm->me)] = counted_;
+  for (auto* sums : {&counts, &owned})
+    MPI_Allreduce(MPI_IN_PLACE, sums->data(), static_cast<int>(sums->size()), MPI_DOUBLE, MPI_SUM,
+                  world);
+  const std::string advice = advise_grid(busiest_of(owned), grids, counts);
+  if (advice.empty() || comm->me != 0) return;
+  fmt::print(stderr, "liggghts | warning | {}\n", advice);
+  if (logfile) fmt::print(logfile, "WARNING: {}\n", advice);  // from where it gets into the summary
 }
 
 void FixLbmCouple::note_end() {
+  advise_on_ranks();
   const protocol::SolidSession& session = *Coupling::instance().session;
   if (comm->me == 0 && logfile)
     fmt::print(logfile,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -155,6 +156,72 @@ end_time = 2.0
 steady_below = 1e-3
 )";
 
+/// An image with shades of grey, a cylinder, a mesh from a file, a yield stress, an inlet with a
+/// profile and a course in time of its own: all from files beside the scene.
+constexpr const char* kShapes = R"(
+[box]
+size = [0.024, 0.020, 0.018]
+[fluid]
+density = 1000.0
+velocity_scale = 0.02
+[fluid.viscosity]
+model = "herschel_bulkley"
+consistency = 0.02
+index = 0.8
+yield_stress = 0.01
+shear_rate = 10.0
+[[boundary]]
+side = "left"
+kind = "velocity"
+velocity = [0.01, 0.0, 0.0]
+profile_table = "profile.csv"
+table = "course.csv"
+[[boundary]]
+side = "right"
+kind = "pressure"
+[[obstacle]]
+image = "image.raw"
+voxel = 0.001
+at = [0.006, 0.007, 0.005]
+grey_levels = [0, 200]
+raw_size = [6, 5, 7]
+raw_type = "uint8"
+[[obstacle]]
+from = [0.016, 0.001, 0.0093]
+to = [0.0172, 0.0187, 0.0081]
+diameter = 0.0043
+[[obstacle]]
+mesh = "mesh.stl"
+scale = 0.001
+move = [0.0195, 0.0122, 0.0031]
+[numerics]
+cell = 0.001
+[run]
+end_time = 0.1
+[output]
+points = [[0.0101, 0.0143, 0.0091], [0.0211, 0.0152, 0.0102]]
+[[sensor]]
+name = "plane"
+kind = "plane"
+axis = "x"
+at = 0.012
+)";
+
+/// The files that kShapes names.
+void write_shapes(const test::TemporaryFolder& folder) {
+  folder.write("profile.csv", "y,factor\n0.0,0.0\n0.009,1.0\n0.013,0.7\n0.02,0.0\n");
+  folder.write("course.csv", "time,factor\n0.0,0.2\n0.04,1.0\n0.1,0.5\n");
+  std::string image;
+  for (int i = 0; i < 6 * 5 * 7; ++i) image += static_cast<char>(40 * (i * 7 % 11));
+  folder.write("image.raw", image);
+  const char* corners[] = {"0 0 0", "5 1 0", "1 6 1", "2 2 7"};
+  std::string mesh = "solid m\n";
+  for (const auto& [a, b, c] : {std::array{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
+    mesh += std::string("facet normal 0 0 0\nouter loop\nvertex ") + corners[a] + "\nvertex " +
+            corners[b] + "\nvertex " + corners[c] + "\nendloop\nendfacet\n";
+  folder.write("mesh.stl", mesh + "endsolid m\n");
+}
+
 class RankFeatures : public testing::TestWithParam<Case> {
  protected:
   void run(const std::string& out, int ranks, const std::string& options) const {
@@ -204,6 +271,7 @@ class RankFeatures : public testing::TestWithParam<Case> {
 
 TEST_P(RankFeatures, GiveTheSameTables) {
   folder_.write("scene.toml", GetParam().scene);
+  write_shapes(folder_);
   run("one", 1, "");
   const auto one = tables("one");
   ASSERT_FALSE(one.empty());
@@ -229,7 +297,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, RankFeatures,
                          testing::Values(Case{"spatial", kSpatial, {"1 1 3", "2 2 1"}},
                                          Case{"moving", kMoving, {"1 1 3"}},
                                          Case{"flat", kFlat, {"1 3 1", "2 1 1"}},
-                                         Case{"held", kHeld, {"2 1 1"}}),
+                                         Case{"held", kHeld, {"2 1 1"}},
+                                         Case{"shapes", kShapes, {"1 1 2", "2 2 1"}}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

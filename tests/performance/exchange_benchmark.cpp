@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <fstream>
 #include <random>
+#include <string>
 
 #include "protocol/transport/mpi_channel.h"
 #include "protocol/wire/routing.h"
@@ -15,8 +18,21 @@ namespace {
 
 using namespace protocol;
 
-constexpr double kTimeout = 60.0, kRadius = 0.005, kSites = 64.0;
+constexpr double kTimeout = 60.0, kRadius = 0.005;
 constexpr std::int64_t kStride = 104729;  // a prime
+
+/// Along an edge of the box; so few that no centre lies in another particle.
+std::int64_t sites_for(int particles) {
+  return particles > 250000 ? 128 : 64;
+}
+
+/// Most memory that this process has had [MB].
+double peak() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return 1.024e-3 * std::strtod(line.c_str() + 6, nullptr);
+  return 0.0;
+}
 
 /// A fluid rank holds a slab of the unit cube.
 Hello hello(Role role, int rank, int ranks) {
@@ -54,13 +70,14 @@ void solid(Channel& channel, int rank, int ranks, int particles, int intervals) 
   std::vector<State> states(mine);
   std::vector<Shape> shapes(mine);
   double copies = 0.0;
-  const auto sites = static_cast<std::int64_t>(kSites);
+  const std::int64_t sites = sites_for(particles);
   for (int i = 0; i < mine; ++i) {
     const std::int64_t id = rank + static_cast<std::int64_t>(i) * ranks;
     // places spread over the box, in no order, none in another's: on a grid, a little off its sites
     const std::int64_t site = id * kStride % (sites * sites * sites);
     const auto place = [&](std::int64_t index) {
-      return (static_cast<double>(index % sites) + 0.5 + 0.2 * (at(random) - 0.5)) / kSites;
+      return (static_cast<double>(index % sites) + 0.5 + 0.2 * (at(random) - 0.5)) /
+             static_cast<double>(sites);
     };
     states[i] = {id, {place(site), place(site / sites), place(site / sites / sites)}, {}, {}};
     shapes[i] = {id, kRadius, 1.0, 0.4 * kRadius * kRadius, 1};
@@ -77,9 +94,10 @@ void solid(Channel& channel, int rank, int ranks, int particles, int intervals) 
   session.exchange({intervals, 0.0, kLast}, states, shapes);
   if (rank == 0)
     fmt::print(
-        "{:>8} particles {:>10.1f} µs an exchange; a solid rank: {} messages, {:.0f} bytes\n",
+        "{:>8} particles {:>10.1f} µs an exchange; a solid rank: {} messages, {:.0f} bytes, {:.0f} "
+        "MB of memory so far\n",
         particles, spent.count() / (intervals - warm), 2 * ranks,
-        copies * static_cast<double>(sizeof(State) + sizeof(Load)));
+        copies * static_cast<double>(sizeof(State) + sizeof(Load)), peak());
 }
 
 }  // namespace
@@ -98,7 +116,7 @@ int main(int argc, char** argv) {
   const int ranks = size / 2;
   const Role role = rank < ranks ? Role::Fluid : Role::Solid;
   for (const auto& [particles, intervals] :
-       {std::pair{1, 20000}, {500, 20000}, {10000, 1000}, {100000, 100}}) {
+       {std::pair{1, 20000}, {500, 20000}, {10000, 1000}, {100000, 100}, {1000000, 10}}) {
     World world = connect(role);
     const auto channel = make_mpi_channel(world, role);
     if (role == Role::Fluid)

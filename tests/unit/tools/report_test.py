@@ -10,7 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
 import numpy as np  # noqa: E402
 from bplbm.page.report import report_page  # noqa: E402
 from bplbm.project import CASES  # noqa: E402
-from bplbm.report import arrays, command, details, judges, needs, seconds, stability  # noqa: E402
+from bplbm.report import arrays, command, details, judges, needs, seconds, speed, stability  # noqa: E402
 from bplbm.report.cases import AT_REST, FREE, OURS, PAPERS  # noqa: E402
 
 
@@ -44,6 +44,41 @@ class Recommended(unittest.TestCase):
                          ["For 5 and 2 % at Re_h 3 take default, a: 1 s. Here that is",
                           "For 1 % at Re_h 3 take default, b: 3 s. Here that is"])
         self.assertIn("[numerics]\ncell = 2", text)
+
+
+class Speed(unittest.TestCase):
+    def test_bodies_fill_their_part_and_do_not_touch(self):
+        for dimension, cells, fraction, _ in speed.CASES_OF_SPEED:
+            centres = speed.centres(dimension, cells, fraction)
+            volume = speed.FULL[dimension] * speed.CELLS_A_DIAMETER ** dimension * len(centres) / cells ** dimension
+            one = speed.FULL[dimension] * speed.CELLS_A_DIAMETER ** dimension / cells ** dimension
+            self.assertLess(abs(volume - fraction), 0.15 * fraction + 1.01 * one)  # whole bodies along each axis
+            near = centres[:200]  # the layers begin at one side
+            gaps = np.linalg.norm(near[:, None] - centres[None], axis=2)
+            self.assertGreater(np.min(gaps[gaps > 0], initial=np.inf), speed.CELL * speed.CELLS_A_DIAMETER)
+            self.assertGreater(centres.min(), 0.5 * speed.CELL * speed.CELLS_A_DIAMETER - 1e-12)
+            self.assertLess(centres.max(), speed.CELL * (cells - 0.5 * speed.CELLS_A_DIAMETER) + 1e-12)
+
+    def test_builds_run_in_turns_and_neighbours_are_compared(self):
+        order = []
+
+        def run(bins, folder, name):  # the machine gets slower from pair to pair
+            order.append(name)
+            seconds = (2.0 if name == "other" else 1.0) * (1 + (len(order) - 1) // 2)
+            return {"wall_seconds": seconds, "physical_seconds": 0.5, "steps": 10, "cells": 1000}
+
+        kept, speed.run, speed.OUT = (speed.run, speed.OUT), run, pathlib.Path(tempfile.mkdtemp())
+        try:
+            for program in ("lbm", "liggghts"):
+                (speed.OUT / program).touch()
+            speed.BIN = speed.OUT
+            rows = speed.speed(speed.OUT, 3, [(2, 40, 0.1, 10)])
+        finally:
+            speed.run, speed.OUT = kept
+        self.assertEqual(order, ["this", "other", "other", "this", "this", "other"])
+        self.assertEqual(rows[0]["ratio"], [2.0, 2.0, 2.0])
+        self.assertEqual(rows[0]["seconds"][1], 4.0)
+        self.assertIn("times as fast", "\n".join(speed.text_of_speed(rows, 3)))
 
 
 class Seconds(unittest.TestCase):

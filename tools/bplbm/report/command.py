@@ -32,6 +32,7 @@ from bplbm.report.fractions import fractions, text_of_fractions
 from bplbm.report.needs import needs, text_of_needs
 from bplbm.report.runs import OUT, module_of, progress, run_scene, verdict
 from bplbm.report.seconds import doubt, text_of_seconds
+from bplbm.report.speed import speed, text_of_speed
 from bplbm.report.stability import draw_stability, stability, text_of_stability
 from bplbm.results import Run
 from bplbm.toml_text import toml
@@ -248,16 +249,19 @@ OTHERS = {"arrays": arrays_case,
           "fractions": lambda args: text_of_fractions(fractions(args.again)),
           "stability": stability_case,
           "needs": lambda args: text_of_needs(kept("needs", needs(args.again)))}
+BY_NAME = {"speed": lambda args: text_of_speed(kept("speed", speed(args.against, args.rounds)), args.rounds)}  # on idle cores
 
 
 def main():
-    names = [*CASES_OF, *OTHERS, *GROUPS]
+    names = [*CASES_OF, *OTHERS, *GROUPS, *BY_NAME]
     p = argparse.ArgumentParser(prog=tool("report"), description=__doc__.splitlines()[0])
-    p.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(names)}; default: all")
+    p.add_argument("cases", nargs="*", metavar="CASE", help=f"of {', '.join(names)}; default: all but speed")
     p.add_argument("--quick", action="store_true", help="about ten minutes (default)")
     p.add_argument("--full", action="store_true", help="more cells, steps and cases; under ninety minutes")
     p.add_argument("--list", action="store_true", help="the cases, and nothing else")
     p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
+    p.add_argument("--against", metavar="DIR", help="of speed: lbm and liggghts of another build, which run in turns with ours")
+    p.add_argument("--rounds", type=int, default=5, help="of speed: runs of each case and build (default 5)")
     p.add_argument("--again", action="store_true", help="run also what has been run before")
     args = p.parse_args()
     if args.list:
@@ -266,7 +270,8 @@ def main():
                          "arrays           error of the drag by solid fraction and cells a diameter",
                          "fractions        solid fraction of a cell: error and cost of some rules",
                          "stability        hard cases, each with every operator and scheme",
-                         "needs            each scene against everything on, and its profile"]))
+                         "needs            each scene against everything on, and its profile",
+                         "speed            seconds a coupled second, beside another build with --against DIR"]))
         return 0
     unknown = [c for c in args.cases if c not in names]
     if unknown:
@@ -277,8 +282,8 @@ def main():
     OUT.mkdir(parents=True, exist_ok=True)
     start, text, everything = time.monotonic(), [], []
     for case in [one for name in args.cases or [*CASES_OF, *OTHERS] for one in GROUPS.get(name, (name,))]:
-        if case in OTHERS:
-            text += OTHERS[case](args)
+        if case in OTHERS or case in BY_NAME:
+            text += {**OTHERS, **BY_NAME}[case](args)
             continue
         rows = measure(case, args.full, args.again)
         draw(case, rows)
