@@ -204,13 +204,14 @@ class Channel:
         begin, computed, turn, crowded = time.monotonic(), time.thread_time(), 0, False
         while not ready():
             turn += 1
-            if turn > BUSY_TURNS:
-                waited = time.monotonic() - begin
-                if waited > seconds:
-                    return ready()
-                crowded = crowded or waited - (time.thread_time() - computed) > CROWD
-                if crowded:
-                    time.sleep(NAP)
-                else:
-                    os.sched_yield()
+            waited = time.monotonic() - begin
+            if waited > seconds:  # also of a few turns: MPI may offer the core to others at every one
+                return ready()
+            if turn <= BUSY_TURNS and waited < CROWD:
+                continue
+            crowded = crowded or waited - (time.thread_time() - computed) > CROWD
+            if crowded:
+                time.sleep(NAP)
+            elif turn > BUSY_TURNS:
+                os.sched_yield()
         return True

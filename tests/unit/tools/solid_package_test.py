@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -20,6 +21,7 @@ import bplbm_solid  # noqa: E402
 import numpy as np  # noqa: E402
 from bplbm_solid import checkpoints, frames, routing  # noqa: E402
 from bplbm_solid.agreement import disagreements  # noqa: E402
+from bplbm_solid.channel import Channel  # noqa: E402
 
 
 def handshake(**changes):
@@ -223,6 +225,25 @@ class Clumps(unittest.TestCase):
         self.assertEqual(list(there), [0, 1, 2])
         with self.assertRaisesRegex(bplbm_solid.SolidError, "sphere of clump 1, which this rank does not send"):
             routing.routed_by(clump.shapes[1:])
+
+
+class Waits(unittest.TestCase):
+    def test_a_few_turns_that_take_long_do_not_outlast_its_time(self):
+        """MPI may offer the core at every turn: on a busy machine each can take as long as another program's share."""
+        asked = []
+
+        def slow():
+            asked.append(None)
+            time.sleep(0.02)
+            return False
+
+        self.assertFalse(Channel._poll(0.1, slow))
+        self.assertLess(len(asked), 8)  # 5 or 6 in its time, and a last one
+
+    def test_it_ends_with_the_answer(self):
+        for turns in (1, 7, 1000):
+            asked = iter(range(1, turns + 1))
+            self.assertTrue(Channel._poll(60.0, lambda asked=asked, turns=turns: next(asked) == turns))
 
 
 class Readme(unittest.TestCase):
