@@ -14,7 +14,9 @@ namespace {
 const std::string kDisc = BPLBM_SOURCE_DIR "/cases/settling_disc/scene.toml";
 constexpr const char* kShort = "[numerics]\ncells_per_diameter = 10\n[run]\nend_time = 0.2\n";
 constexpr const char* kOnTheGround =
-    "[particles]\nstart = [[0.01, 0.005]]\n[numerics]\ncells_per_diameter = 10\n"
+    "[particles]\nstart = [[0.01, 0.005], [0.01, 0.03]]\n"
+    "[particles.variables]\nparticle2_interval = 480\n"
+    "[numerics]\ncells_per_diameter = 10\n"
     "[run]\nend_time = 0.3\ncheckpoint_every = 0.1\n";
 
 std::vector<std::string> engines() {
@@ -73,7 +75,8 @@ TEST_P(CEngine, LetsTheDiscFallAsTheReferenceDoes) {
   expect_same_fall(probes("own"), probes("reference"), 1e-12, 1e-10);
 }
 
-// The disc lies on the ground when the last checkpoint is written.
+// The disc lies on the ground when the last checkpoint is written, and another one comes at its
+// very interval.
 TEST_P(CEngine, GoesOnFromACheckpointToTheBit) {
   folder_.write("overlay.toml", kOnTheGround);
   ASSERT_EQ(run("--out whole").exit_code, 0);

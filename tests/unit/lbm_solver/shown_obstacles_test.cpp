@@ -15,6 +15,7 @@
 #include "lbm_solver/io/scene_reader.h"
 #include "lbm_solver/io/stl_file.h"
 #include "lbm_solver/solver/plan.h"
+#include "protocol/transport/hdf5_file.h"
 #include "tests/support/job.h"
 #include "tests/support/meshes.h"
 

@@ -10,6 +10,7 @@
 
 #include "lbm_solver/coupling/observers.h"
 #include "lbm_solver/io/scene_reader.h"
+#include "protocol/transport/hdf5_file.h"
 #include "tests/support/job.h"
 
 namespace {

@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
 from bplbm import manual  # noqa: E402
-from bplbm.checks import commands, documents, keys  # noqa: E402
+from bplbm.checks import commands, documents, includes, keys  # noqa: E402
 
 README = ROOT / "README.md"
 
@@ -53,6 +53,12 @@ class Documents(unittest.TestCase):
 
     def test_headings_become_anchors(self):
         self.assertEqual(documents.anchor(" What is `left`, and the radius"), "what-is-left-and-the-radius")
+
+
+class Includes(unittest.TestCase):
+    def test_a_unit_whose_sources_know_each_other_is_found(self):
+        lists = "set(numbers_1\n  solver/fluid.cpp solver/wale.cpp lattice/lattice.cpp)\nset(readers\n  io/log.cpp)"
+        self.assertEqual(len(list(includes.mixed_units(lists))), 2)  # each knows the other
 
 
 class Commands(unittest.TestCase):
