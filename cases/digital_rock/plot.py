@@ -35,6 +35,7 @@ def main():
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.2), width_ratios=(1, 1.5))
     image = draw_slice(left, run, run.frames()[-1][1], "y", length_unit=1e-3)
     figure.colorbar(image, ax=left, label="speed [m/s]")
+    left.set_xticks([0.0, 0.5, 1.0])
     names = {"set-fine": "grey, a cell a voxel", "variant-averaged": "cut at a threshold, averaged",
              "variant-staircase": "cut at a threshold, a cell a voxel"}
     rows = {"grey, averaged": run, **{names[name]: other for name, other in others.items() if name in names}}

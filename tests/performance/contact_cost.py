@@ -66,8 +66,8 @@ def run(folder, edge, steps, law, bonds):
     """@return microseconds a step of the pair style and of all"""
     pitch = 0.00999
     (folder / "in").write_text(SCRIPT.format(size=pitch * edge, pitch=pitch, law=law, bonds=bonds, steps=steps))
-    job = subprocess.run(["taskset", "-c", "0", "mpirun", "--bind-to", "none", "-np", "1", str(BIN / "liggghts"), "-in", "in", "-screen",
-                          "none", "-log", "log"], cwd=folder, env=environment(shared=True), check=False, capture_output=True,
+    job = subprocess.run(["taskset", "-c", "0", "mpirun", "--bind-to", "none", "-np", "1", str(BIN / "liggghts"), "-in", "in",
+                          "-screen", "none", "-log", "log"], cwd=folder, env=environment(shared=True), check=False, capture_output=True,
                          text=True, timeout=600)
     if job.returncode:
         sys.exit(job.stdout + job.stderr)
@@ -92,7 +92,8 @@ def main():
         ratio = np.percentile(np.array(times) / first, [25, 50, 75], axis=0)
         pair, whole = np.median(times, axis=0)
         print(f"{args.edge ** 3} spheres, {law}: pair style {pair:.4g} µs a step, {ratio[1, 0]:.3f} ({ratio[0, 0]:.3f} … "
-              f"{ratio[2, 0]:.3f}) of hooke/stiffness; all {whole:.4g} µs, {ratio[1, 1]:.3f} ({ratio[0, 1]:.3f} … {ratio[2, 1]:.3f})")
+              f"{ratio[2, 0]:.3f}) of hooke/stiffness; all {whole:.4g} µs, {ratio[1, 1]:.3f} ({ratio[0, 1]:.3f} … "
+              f"{ratio[2, 1]:.3f})")
 
 
 if __name__ == "__main__":

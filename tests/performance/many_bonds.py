@@ -37,8 +37,8 @@ density = 1200.0
 contact_stiffness = 100.0
 [particles.variables]
 bond_stiffness = 100.0
-bond_strength = 1.0
-bond_shear_strength = 1.0
+bond_strength = 0.05
+bond_shear_strength = 0.05
 damping_ratio = 0.3
 friction = 0.3
 bond_gap = 1e-6
@@ -91,10 +91,11 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     write(folder, args.edge, args.intervals)
-    job = subprocess.run(["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), str(BIN / "lbm"), "scene.toml",
-                          "--out", "out", "--progress", "none", ":", "-np", str(args.solid_ranks), str(BIN / "liggghts"), "-in",
-                          "in.liggghts", "-log", "liggghts.log", "-screen", "none"], cwd=folder, env=environment(shared=True),
-                         check=False, capture_output=True, text=True, timeout=3000)
+    line = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), str(BIN / "lbm"), "scene.toml",
+            "--out", "out", "--progress", "none", ":", "-np", str(args.solid_ranks), str(BIN / "liggghts"), "-in", "in.liggghts",
+            "-log", "liggghts.log", "-screen", "none"]
+    job = subprocess.run(line, cwd=folder, env=environment(shared=True), check=False, capture_output=True, text=True,
+                         timeout=3000)
     if job.returncode:
         sys.exit(job.stdout + job.stderr)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -106,7 +107,8 @@ def main():
     print(f"{args.edge ** 3} spheres, {s['bonds']['intact']} bonds, {s['cells']} cells, {s['substeps']} substeps: "
           f"{s['wall_seconds'] / intervals:.3g} s an interval ({s['mlups']:.3g} million updates/s), {parts}; processors "
           f"{used.ru_utime + used.ru_stime:.0f} s; the fluid took {s['peak_megabytes']['all']:.0f} MB, LIGGGHTS "
-          f"{float(solid.group(1)) if solid else float('nan'):.0f} MB a rank; the largest process {1.024e-3 * used.ru_maxrss:.0f} MB")
+          f"{float(solid.group(1)) if solid else float('nan'):.0f} MB a rank; the largest process "
+          f"{1.024e-3 * used.ru_maxrss:.0f} MB")
 
 
 if __name__ == "__main__":

@@ -77,13 +77,40 @@ def write(folder, dimension, blocks):
     cells, end = BOXES[dimension]
     start = centres(cells)
     (folder / "scene.toml").write_text(SCENE.format(
-        size=[round(CELL * n, 9) for n in cells], gravity=[0.0] * (dimension - 1) + [-0.4], diameter=DIAMETER, start=start, cell=CELL,
-        end=end, blocks=blocks))
+        size=[round(CELL * n, 9) for n in cells], gravity=[0.0] * (dimension - 1) + [-0.4], diameter=DIAMETER, start=start,
+        cell=CELL, end=end, blocks=blocks))
     atoms = "".join(f"create_atoms 1 single {' '.join(map(str, x))}{' 0.0' if dimension == 2 else ''} units box\n" for x in start)
     common = CASES / "common"
     (folder / "in.liggghts").write_text((common / "box.liggghts").read_text() + atoms + (
         common / f"{'discs' if dimension == 2 else 'spheres'}.liggghts").read_text())
     return len(start)
+
+
+def run(folder, dimension, blocks, args):
+    """@return number of bodies and the summary"""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    count = write(folder, dimension, blocks)
+    line = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), str(BIN / "lbm"), "scene.toml",
+            "--progress", "none", *(["--until", str(args.until)] if args.until else []), ":", "-np", "1", str(BIN / "liggghts"),
+            "-in", "in.liggghts", "-log", "none", "-screen", "none"]
+    job = subprocess.run(line, cwd=folder, env=environment(shared=True), check=False, capture_output=True, text=True,
+                         timeout=3000)
+    if job.returncode:
+        sys.exit(job.stdout + job.stderr)
+    return count, json.loads((folder / "out" / "summary.json").read_text())
+
+
+def told(dimension, name, runs, first):
+    """A line of a kind of blocks. @param first  seconds with equal blocks, in the same rounds"""
+    summaries = [summary for _, summary in runs]
+    walls = [s["wall_seconds"] for s in summaries]
+    ratio = statistics.median([a / b for a, b in zip(first, walls)])
+    busiest, moves = (statistics.median([s[key] for s in summaries]) for key in ("busiest_rank", "block_moves"))
+    share = 100 * statistics.median([s["time_share"].get("balance", 0.0) for s in summaries])
+    return (f"{dimension}D, {runs[0][0]} bodies, {summaries[0]['steps']} steps, {name}: {statistics.median(walls):.4g} s "
+            f"({min(walls):.4g} … {max(walls):.4g}), {ratio:.3f} times as fast as equal blocks; busiest {busiest:.2f} × the "
+            f"mean; {moves} moves, {share:.2g} % of the time")
 
 
 def main():
@@ -93,30 +120,14 @@ def main():
     p.add_argument("--fluid-ranks", type=int, default=2)
     p.add_argument("--until", type=float)
     args = p.parse_args()
-    folder = home() / "out" / "settling_blocks"
     for dimension in args.dimension:
         found = {name: [] for name in BLOCKS}
         for _ in range(args.rounds):
             for name, blocks in BLOCKS.items():
-                shutil.rmtree(folder, ignore_errors=True)
-                folder.mkdir(parents=True)
-                count = write(folder, dimension, blocks)
-                until = ["--until", str(args.until)] if args.until else []
-                job = subprocess.run(["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(args.fluid_ranks), str(BIN / "lbm"),
-                                      "scene.toml", "--progress", "none", *until, ":", "-np", "1", str(BIN / "liggghts"), "-in",
-                                      "in.liggghts", "-log", "none", "-screen", "none"], cwd=folder, env=environment(shared=True),
-                                     check=False, capture_output=True, text=True, timeout=3000)
-                if job.returncode:
-                    sys.exit(job.stdout + job.stderr)
-                found[name].append(json.loads((folder / "out" / "summary.json").read_text()))
-        first = [s["wall_seconds"] for s in found["equal blocks"]]
+                found[name].append(run(home() / "out" / "settling_blocks", dimension, blocks, args))
+        first = [summary["wall_seconds"] for _, summary in found["equal blocks"]]
         for name, runs in found.items():
-            walls = [s["wall_seconds"] for s in runs]
-            print(f"{dimension}D, {count} bodies, {runs[0]['steps']} steps, {name}: {statistics.median(walls):.4g} s "
-                  f"({min(walls):.4g} … {max(walls):.4g}), {statistics.median([a / b for a, b in zip(first, walls)]):.3f} times as "
-                  f"fast as equal blocks; busiest {statistics.median([s['busiest_rank'] for s in runs]):.2f} × the mean; "
-                  f"{statistics.median([s['block_moves'] for s in runs])} moves, "
-                  f"{statistics.median([s['time_share'].get('balance', 0.0) for s in runs]) * 100:.2g} % of the time", flush=True)
+            print(told(dimension, name, runs, first), flush=True)
 
 
 if __name__ == "__main__":
