@@ -86,6 +86,8 @@ kind = "pressure"
 )";
   std::string open = test::replaced(kScene, "sides_x = \"periodic\"\n", "") + ends;
   open = test::replaced(open, "body_force = [0.001, 0.0]\n", "");
+  open = test::replaced(open, "end_time = 10.0", "end_time = 60.0");
+  open = test::replaced(open, "checkpoint_every = 0.5", "checkpoint_every = 10.0");
   folder_.write("open.toml", open);
   const JobResult found = run("open.toml --out open");
   expect_ok(found);
