@@ -38,7 +38,7 @@ def main():
         held, held_times, held_through = passed(narrow)
         results.append(result("grains through the narrow slot", held_through[-1] / held, "1", 0.0,
                               "a slot of 0.8 grains", 0, scale=1.0))
-        told.append(quantity("flux with the slot clogged", narrow.flux(narrow.frames()[-1][1])[2], "m/s"))
+        told.append(quantity("flux with the slot clogged", narrow.mean_velocity(narrow.frames()[-1][1])[2], "m/s"))
         right.plot(held_times, 100 * held_through / held, label="spheres, slot of 0.8 grains")
     if "variant-clumps" in others:
         count, times, through = passed(others["variant-clumps"])

@@ -40,7 +40,8 @@ void check_gravity(const Scene& s, Plan& plan) {
 
 /// A script includes files by ${scene_folder}, where LIGGGHTS parts words at blanks.
 void check_folder(const Scene& s, Plan& plan) {
-  const std::string folder = std::filesystem::path(s.file).parent_path().string();
+  const std::string first = s.file.substr(0, s.file.find(" + "));  // overlays follow
+  const std::string folder = std::filesystem::path(first).parent_path().string();
   if (folder.find_first_of(" \t") != std::string::npos)
     plan.warnings.push_back(fmt::format(
         "the scene's folder \"{}\" has a blank in its name: LIGGGHTS parts words there, and a "

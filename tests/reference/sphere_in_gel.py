@@ -64,6 +64,7 @@ def splines(length, elements, grading):
     """Gauss points, weights, the splines' values and first two derivatives there, and knots; finer at the sphere."""
     t = np.linspace(0, 1, elements + 1)
     borders = length * (np.exp(grading * t) - 1) / (np.exp(grading) - 1)
+    borders[-1] = length  # round-off may put it beyond the knots at the end
     knots = np.r_[[0] * DEGREE, borders, [length] * DEGREE]
     x, w = leggauss(DEGREE + 2)
     half, middle = np.diff(borders)[:, None] / 2, (borders[1:] + borders[:-1])[:, None] / 2

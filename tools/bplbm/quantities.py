@@ -1,8 +1,11 @@
 """Numbers that every run has, without a plot.py: of its particles and bonds, at the end and at most."""
 
+import h5py
 import numpy as np
 
 from bplbm.results import quantity, read_table
+
+ALONE = -1  # the carrier of what is no part of a clump
 
 
 def default_quantities(run):
@@ -14,8 +17,20 @@ def default_quantities(run):
     probes = run.folder / "probes.csv"
     if probes.is_file() and len(probes.read_text().splitlines()) > 1:
         box = {axis: run.parameters[f"box_{axis}"] for axis in "xyz" if f"box_{axis}" in run.parameters}
-        found += of_particles(read_table(probes), box, run.summary["physical_seconds"])
+        table = read_table(probes)
+        whole = ~np.isin(table["id"], spheres_of_clumps(run))
+        found += of_particles({name: column[whole] for name, column in table.items()}, box, run.summary["physical_seconds"])
     return found
+
+
+def spheres_of_clumps(run):
+    """Numbers of the particles that are part of a clump in any frame of a Run: the clump is there as well."""
+    parts = set()
+    if (run.folder / "fields.h5").is_file():
+        with h5py.File(run.folder / "fields.h5") as f:
+            for frame in (f[name] for name in f if "particle_carrier" in f[name]):
+                parts.update(frame["particles"][:, 0][frame["particle_carrier"][:] != ALONE].astype(int))
+    return list(parts)
 
 
 def of_particles(table, box, end):

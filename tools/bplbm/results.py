@@ -86,8 +86,16 @@ class Run:
         with h5py.File(self.folder / "fields.h5") as f:
             return {key: f[name][key][...] for key in f[name]}
 
+    def mean_velocity(self, name):
+        """Mean over the box of the velocity of a frame [m/s], its components: in steady flow the flux, covered cells or not
+        (lbm_solver/docs/resistance.md)."""
+        with h5py.File(self.folder / "fields.h5") as f:
+            velocity = np.asarray(f[name]["velocity"], float)
+        return velocity.reshape(-1, velocity.shape[-1]).mean(axis=0)
+
     def flux(self, name):
-        """Mean flux of a frame through the box [m/s], its components; exact in steady flow, covered cells or not."""
+        """Mean of the momentum that arrives in the cells, over the density [m/s], its components. Where a force acts on cells
+        that are covered whole it takes turns from step to step: the flux is the mean of two, or `mean_velocity`."""
         with h5py.File(self.folder / "fields.h5") as f:
             return [f[name].attrs[f"flux_{axis}"] for axis in "xyz" if f"flux_{axis}" in f[name].attrs]
 

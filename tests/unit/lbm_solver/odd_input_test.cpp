@@ -189,6 +189,8 @@ TEST_F(OddInput, OfACoupledSceneIsNamed) {
   std::filesystem::create_directory(folder_.path() + "/my scenes");
   expect_in(said(folder_.write("my scenes/scene.toml", good)),
             "my scenes\" has a blank in its name");
+  const std::string overlay = folder_.write("overlay.toml", "[run]\nend_time = 0.5\n");
+  EXPECT_TRUE(make_plan(read_scene({folder_.write("scene.toml", good), overlay})).warnings.empty());
   expect_in(said(folder_.write("scene.toml", test::replaced(good, "[coupling]",
                                                             "[coupling]\nfluid_steps = 1000"))),
             "tested are up to 10");

@@ -145,4 +145,23 @@ TEST(ViscosityOfAScene, WarnsOfALawThatDoesNotAct) {
   }));
 }
 
+TEST(ViscosityOfAScene, WarnsOfOperatorsThatDoNotFitAYieldStress) {
+  const test::TemporaryFolder folder;
+  const auto warned = [&](const std::string& law, const std::string& collision,
+                          const std::string& words) {
+    Scene s = scene_with(folder, law);
+    s.numerics.collision = collision;
+    return std::ranges::any_of(make_plan(s).warnings, [&](const std::string& w) {
+      return w.find(words) != std::string::npos;
+    });
+  };
+  const std::string mud =
+      "{model = \"bingham\", consistency = 0.1, yield_stress = 0.1, nu_min = 1e-5, nu_max = ";
+  EXPECT_TRUE(warned(mud + "1e-2}", "bgk", "yield stress through a channel"));
+  EXPECT_FALSE(warned(mud + "1e-2}", "trt", "yield stress through a channel"));
+  EXPECT_TRUE(warned(mud + "1e-1}", "trt", "carried along without yielding"));
+  EXPECT_FALSE(warned(mud + "1e-1}", "central_moment", "carried along without yielding"));
+  EXPECT_FALSE(warned(kGel + "}", "trt", "carried along without yielding"));
+}
+
 }  // namespace

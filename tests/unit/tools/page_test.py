@@ -22,7 +22,7 @@ from bplbm import pictures, result, run as launcher  # noqa: E402
 from bplbm.page import flow, histories, picture  # noqa: E402
 from bplbm.page.failed import write_failed_page  # noqa: E402
 from bplbm.page.run import write_page  # noqa: E402
-from bplbm.quantities import of_particles  # noqa: E402
+from bplbm.quantities import default_quantities, of_particles  # noqa: E402
 from bplbm.results import Run  # noqa: E402
 from bplbm.scenes import Scene  # noqa: E402
 
@@ -159,6 +159,14 @@ class Page(Output):
         self.write(2)
         (self.out / "own.png").write_bytes(picture.png(np.zeros((2, 2), np.uint8), np.zeros((256, 3), np.uint8)))
         self.assertRegex(self.page(), r'<img src="data:image/png;base64,[^"]*" alt="own.png">')
+
+    def test_a_clump_and_its_spheres_are_one_particle(self):
+        run = self.write(2)
+        self.assertEqual(default_quantities(run)[1]["value"], 2)
+        with h5py.File(self.out / "fields.h5", "a") as f:
+            for frame in f.values():
+                frame["particle_carrier"] = np.array([-1.0, 1.0])  # the second is a sphere of the first
+        self.assertEqual(default_quantities(run)[1]["value"], 1)
 
     def test_both_waiting_at_once_is_said(self):
         self.assertIsNone(launcher.hint_of_waiting(0.5, 9.6, 10.0))  # in turns
