@@ -156,11 +156,11 @@ TEST(ViscosityOfAScene, WarnsOfOperatorsThatDoNotFitAYieldStress) {
     });
   };
   const std::string mud =
-      "{model = \"bingham\", consistency = 0.1, yield_stress = 0.1, nu_min = 1e-5, nu_max = ";
-  EXPECT_TRUE(warned(mud + "1e-2}", "bgk", "yield stress through a channel"));
-  EXPECT_FALSE(warned(mud + "1e-2}", "trt", "yield stress through a channel"));
-  EXPECT_TRUE(warned(mud + "1e-1}", "trt", "carried along without yielding"));
-  EXPECT_FALSE(warned(mud + "1e-1}", "central_moment", "carried along without yielding"));
+      "viscosity = {model = \"bingham\", consistency = 0.1, yield_stress = 0.1, nu_max = ";
+  EXPECT_TRUE(warned(mud + "5e-4}", "bgk", "yield stress through a channel"));
+  EXPECT_FALSE(warned(mud + "5e-4}", "trt", "yield stress through a channel"));
+  EXPECT_TRUE(warned(mud + "4e-2}", "trt", "carried along without yielding"));
+  EXPECT_FALSE(warned(mud + "4e-2}", "central_moment", "carried along without yielding"));
   EXPECT_FALSE(warned(kGel + "}", "trt", "carried along without yielding"));
 }
 
