@@ -137,6 +137,20 @@ TEST(ViscosityOfAScene, TakesAnEddyViscosityOnTop) {
               1.0, 2e-4);
 }
 
+// ν = ν_min + (ν_max - ν_min) (1 + (λ γ̇)²)^((n-1)/2): ν_max at rest, and half of the way to ν_min
+// where (1 + (λ γ̇)²)^((n-1)/2) is ½.
+TEST(ViscosityOfAScene, IsThatOfCarreau) {
+  const test::TemporaryFolder folder;
+  const Scene s = scene_with(folder,
+                             "viscosity = {model = \"carreau\", index = 0.4, time_constant = 2.0, "
+                             "nu_min = 1e-6, nu_max = 1e-4}");
+  const ViscosityLaw law(s.fluid, 4.0);
+  const double half = 0.5 * std::sqrt(std::pow(2.0, 2.0 / 0.6) - 1.0);
+  EXPECT_NEAR(law(0.0), 1e-4, 1e-12);
+  EXPECT_NEAR(law(half), 0.5 * (1e-4 + 1e-6), 1e-10);
+  EXPECT_NEAR((law(200.0) - 1e-6) / (law(100.0) - 1e-6), std::pow(2.0, -0.6), 1e-4);
+}
+
 TEST(ViscosityOfAScene, WarnsOfALawThatDoesNotAct) {
   const test::TemporaryFolder folder;
   const Plan plan = make_plan(scene_with(folder, kGel + ", nu_min = 1e-5, nu_max = 1e-4}"));
