@@ -87,8 +87,8 @@ class Run:
             return {key: f[name][key][...] for key in f[name]}
 
     def mean_velocity(self, name):
-        """Mean over the box of the velocity of a frame [m/s], its components: in steady flow the flux, covered cells or not
-        (lbm_solver/docs/resistance.md)."""
+        """Mean over the box of the velocity of a frame [m/s], its components: in steady flow the flux, covered cells or not,
+        with the solid terms by resistance, which are the default (lbm_solver/docs/resistance.md)."""
         with h5py.File(self.folder / "fields.h5") as f:
             velocity = np.asarray(f[name]["velocity"], float)
         return velocity.reshape(-1, velocity.shape[-1]).mean(axis=0)
