@@ -5,6 +5,9 @@
 
 namespace dem {
 
+/// The registry owns nothing. No other place can be the owner: a script may have the pair style and
+/// any of the fixes without the others and in any order, a fix may be undone by `unfix`, and
+/// LIGGGHTS deletes the pair style before the fixes that count its bonds.
 std::shared_ptr<BondBook> BondBook::of(const LAMMPS_NS::LAMMPS* lammps) {
   static std::map<const LAMMPS_NS::LAMMPS*, std::weak_ptr<BondBook>> books;
   std::shared_ptr<BondBook> book = books[lammps].lock();

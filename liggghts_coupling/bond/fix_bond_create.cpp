@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -58,60 +59,52 @@ std::set<int> everywhere(const std::vector<int>& mine, MPI_Comm world) {
 FixBondCreate::FixBondCreate(LAMMPS_NS::LAMMPS* lammps, int narg, char** arg)
     : Fix(lammps, narg, arg) {
   restart_global = 1;
-  BondRequest request{.fix = id};
-  double spread = 0.0;
-  unsigned long seed = 0;
-  bool gap = false;
-  for (int k = 3; k < narg;) {
-    const std::string word = arg[k];
-    const auto need = [&](int count) {
-      if (k + count >= narg)
-        error->fix_error(FLERR, this, ("'" + word + "' lacks its value").c_str());
-    };
-    if (word == "gap") {
-      need(1);
-      request.gap = argument<double>(error, this, word, arg[k + 1]);
-      gap = true;
-      k += 2;
-    } else if (word == "types") {
-      need(2);
-      request.types = {argument<int>(error, this, word, arg[k + 1]),
-                       argument<int>(error, this, word, arg[k + 2])};
-      k += 3;
-    } else if (word == "list") {
-      need(1);
-      request.listed = read_list(arg[k + 1]);
-      wanted_ = static_cast<long>(request.listed->size());
-      k += 2;
-    } else if (word == "notch") {
-      need(4);
-      request.notches.push_back(read_notch(arg + k + 1));
-      k += 5;
-    } else if (word == "spread") {
-      need(1);
-      spread = argument<double>(error, this, word, arg[k + 1]);
-      if (spread < 0.0 || spread >= 1.0)
-        error->fix_error(FLERR, this, "spread is at least 0 and below 1");
-      k += 2;
-    } else if (word == "seed") {
-      need(1);
-      seed = static_cast<unsigned long>(argument<int>(error, this, word, arg[k + 1]));
-      k += 2;
-    } else {
-      error->fix_error(FLERR, this,
-                       ("knows no '" + word +
-                        "'; use gap G [types A B] [list FILE] [notch X1 Y1 X2 Y2] "
-                        "[spread S seed N]")
-                           .c_str());
-    }
-  }
-  if (!gap || request.gap < 0.0)
+  Wish wish{.request = {.fix = id, .gap = -1.0}};
+  for (int k = 3; k < narg;) k += 1 + read_word(arg[k], {arg + k + 1, arg + narg}, wish);
+  check(wish.request);
+  if (wish.request.listed) wanted_ = static_cast<long>(wish.request.listed->size());
+  agree_on_spread(wish.spread, wish.seed);
+  bonds_->requests.push_back(wish.request);
+}
+
+/// @param rest  what comes behind the word @return  how many of those are its values
+int FixBondCreate::read_word(const std::string& word, std::span<char*> rest, Wish& wish) {
+  const auto number = [&](int k) { return argument<double>(error, this, word, rest[k]); };
+  const auto whole = [&](int k) { return argument<int>(error, this, word, rest[k]); };
+  struct Reader {
+    int values;
+    std::function<void()> read;
+  };
+  const std::map<std::string, Reader> readers{
+      {"gap", {1, [&] { wish.request.gap = number(0); }}},
+      {"types",
+       {2,
+        [&] {
+          wish.request.types = {whole(0), whole(1)};
+        }}},
+      {"list", {1, [&] { wish.request.listed = read_list(rest[0]); }}},
+      {"notch", {4, [&] { wish.request.notches.push_back(read_notch(rest.data())); }}},
+      {"spread", {1, [&] { wish.spread = read_spread(rest[0]); }}},
+      {"seed", {1, [&] { wish.seed = static_cast<unsigned long>(whole(0)); }}}};
+  const auto reader = readers.find(word);
+  if (reader == readers.end())
+    error->fix_error(FLERR, this,
+                     ("knows no '" + word +
+                      "'; use gap G [types A B] [list FILE] [notch X1 Y1 X2 Y2] "
+                      "[spread S seed N]")
+                         .c_str());
+  if (std::ssize(rest) < reader->second.values)
+    error->fix_error(FLERR, this, ("'" + word + "' lacks its value").c_str());
+  reader->second.read();
+  return reader->second.values;
+}
+
+void FixBondCreate::check(const BondRequest& request) {
+  if (request.gap < 0.0)
     error->fix_error(FLERR, this, "needs 'gap G', the largest gap in m, at least 0");
   if (request.listed && !request.notches.empty())
     error->fix_error(FLERR, this,
                      "takes 'list' or 'notch'; leave what the notch cuts out of the list");
-  agree_on_spread(spread, seed);
-  bonds_->requests.push_back(request);
 }
 
 FixBondCreate::~FixBondCreate() {
@@ -137,6 +130,13 @@ void FixBondCreate::agree_on_spread(double spread, unsigned long seed) {
                   "hold for all bonds; give all of these fixes the same",
                   spread, seed, book.spread, book.seed)
           .c_str());
+}
+
+double FixBondCreate::read_spread(const char* value) {
+  const auto spread = argument<double>(error, this, "spread", value);
+  if (spread < 0.0 || spread >= 1.0)
+    error->fix_error(FLERR, this, "spread is at least 0 and below 1");
+  return spread;
 }
 
 Notch FixBondCreate::read_notch(char** ends) {

@@ -10,6 +10,8 @@
 #include <array>
 #include <map>
 #include <set>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "liggghts_coupling/bond/bond_book.h"
@@ -43,6 +45,15 @@ class FixBondCreate final : public LAMMPS_NS::Fix {
 
  private:
   std::shared_ptr<BondBook> bonds_ = BondBook::of(lmp);
+  /// What the line in the script says.
+  struct Wish {
+    BondRequest request;
+    double spread = 0.0;
+    unsigned long seed = 0;
+  };
+  int read_word(const std::string& word, std::span<char*> rest, Wish& wish);
+  void check(const BondRequest& request);
+  double read_spread(const char* value);
   std::set<std::pair<long, long>> read_list(const char* path);
   Notch read_notch(char** ends);
   void agree_on_spread(double spread, unsigned long seed);
