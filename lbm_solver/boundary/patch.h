@@ -61,7 +61,7 @@ class Patch {
   /// State of each link that a checkpoint must keep besides the mass; empty: none.
   virtual std::vector<double>& memory() { return no_memory_; }
   const std::vector<Link>& links() const { return links_; }
-  void restore_mass(double mass_in) { mass_in_ = mass_in; }
+  void set_mass_in(double mass_in) { mass_in_ = mass_in; }
 
  protected:
   /// Writes a new value and books its mass.

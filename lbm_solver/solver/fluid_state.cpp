@@ -29,8 +29,7 @@ void Fluid::load_boundary(std::size_t number, const Record& record) {
     if (link >= links.size()) throw std::invalid_argument("'links' is of another size");
     memory[k] = links[link];
   }
-  patches_[number]->restore_mass(
-      ranks_->own_part(record.get<std::vector<double>>("mass_in"), 1)[0]);
+  patches_[number]->set_mass_in(ranks_->own_part(record.get<std::vector<double>>("mass_in"), 1)[0]);
 }
 
 Record Fluid::save() const {
