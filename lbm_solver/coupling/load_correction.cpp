@@ -15,13 +15,13 @@ double relaxation_time(const Units& units, const FluidScene& fluid) {
 
 }  // namespace
 
-LightRule light_rule(const std::string& solid_term, double tau) {
+LightRule light_rule(SolidTerm solid_term, double tau) {
   if (by_resistance(solid_term)) return {tau < 0.525 ? 1.5 : 0.99, 1.0, 0.05};
   return {tau > 0.8 ? 2.0 : 0.9, 2.0, 0.2};
 }
 
-LoadCorrection::LoadCorrection(const Units& units, const Scene& scene,
-                               const std::string& solid_term, bool flat)
+LoadCorrection::LoadCorrection(const Units& units, const Scene& scene, SolidTerm solid_term,
+                               bool flat)
     : fluid_(scene.fluid),
       coupling_(*scene.coupling),
       depth_(units.depth),

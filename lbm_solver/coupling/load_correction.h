@@ -22,7 +22,7 @@ struct LightRule {
 /// below 0.9, or below twice the fluid where it is so viscous that a step carries momentum across a
 /// cell (τ above 0.8). Elsewhere those would be harmed: where surface cells are nearly transparent
 /// (τ → ½) the fluid answers a virtual mass too late, and they blew up at ρ_s = ρ_f.
-LightRule light_rule(const std::string& solid_term, double tau);
+LightRule light_rule(SolidTerm solid_term, double tau);
 
 /// From the mean load that the lattice puts on a body to the load that the solid is sent.
 ///
@@ -74,7 +74,7 @@ LightRule light_rule(const std::string& solid_term, double tau);
 class LoadCorrection {
  public:
   /// @param flat  two dimensions
-  LoadCorrection(const Units& units, const Scene& scene, const std::string& solid_term, bool flat);
+  LoadCorrection(const Units& units, const Scene& scene, SolidTerm solid_term, bool flat);
 
   /// Some particle of the scene may get a virtual mass.
   bool any_light() const { return any_light_; }

@@ -29,7 +29,7 @@ Vec3 turned(const Vec3& arm, const Vec3& angle) {
 }  // namespace
 
 Particles::Particles(const Units& units, const Scene& scene, const Decomposition& ranks,
-                     const std::string& solid_term)
+                     SolidTerm solid_term)
     : units_(units),
       hydraulic_ratio_(scene.particles->hydraulic_ratio),
       ranks_(ranks),

@@ -29,9 +29,8 @@ class Particles {
  public:
   /// @param solid_term  that the particles' cells collide by
   Particles(const Units& units, const Scene& scene, const Decomposition& ranks,
-            const std::string& solid_term);
-  Particles(const Units& units, const Scene& scene, const Domain& domain,
-            const std::string& solid_term)
+            SolidTerm solid_term);
+  Particles(const Units& units, const Scene& scene, const Domain& domain, SolidTerm solid_term)
       : Particles(units, scene, Decomposition(domain), solid_term) {}
 
   /// What the solid told of itself with the particles; on rank 0, and null where it tells nothing.

@@ -88,13 +88,6 @@ std::string hydraulic_text(const ParticleScene& particles, double dx, bool flat)
       hi, lo / dx, flat ? "discs" : "spheres");
 }
 
-template <class Choice>
-std::vector<std::string> names_of(const std::vector<Choice>& choices) {
-  std::vector<std::string> names;
-  for (const Choice choice : choices) names.push_back(name_of(choice));
-  return names;
-}
-
 /// What a mesh or an image is; empty for other obstacles.
 std::string shape_text(const ObstacleScene& o, double dx) {
   if (o.mesh) {
@@ -123,10 +116,10 @@ std::string describe_choices() {
   const auto line = [&out](const char* key, const std::vector<std::string>& names) {
     out += fmt::format("{:<21} {}\n", key, fmt::join(names, ", "));
   };
-  line("numerics.lattice", known_lattices());
-  line("numerics.collision", names_of(known_collisions()));
-  line("numerics.solid_term", known_solid_terms());
-  line("numerics.scheme", names_of(known_schemes()));
+  line("numerics.lattice", names_of(choices<VelocitySet>()));
+  line("numerics.collision", names_of(choices<CollisionOperator>()));
+  line("numerics.solid_term", names_of(choices<SolidTerm>()));
+  line("numerics.scheme", names_of(choices<SolidScheme>()));
   line("fluid.viscosity.model", names_of(known_viscosities()));
   return out + "or \"auto\"; lbm_solver/docs/scene.md has every key of a scene\n";
 }
@@ -160,7 +153,7 @@ void report_box(const Scene& s, const Plan& p, Report& report) {
                                    s.box.size.y(), s.box.size.z(), sides, text(s.box.sides[2])));
     report.line("grid",
                 fmt::format("{} × {} × {} cells of {:.6g} m, {}{}", p.domain.nx, p.domain.ny,
-                            p.domain.nz, p.units.dx, p.kernel.lattice, precision));
+                            p.domain.nz, p.units.dx, name_of(p.kernel.lattice), precision));
   }
 }
 
@@ -205,8 +198,8 @@ void report_choices(const Plan& p, Report& report) {
     report.line("collision",
                 fmt::format("{} [{}]", name_of(p.kernel.collision), p.collision_reason));
   if (!p.solid_reason.empty())
-    report.line("solids",
-                fmt::format("{}, {} [{}]", name_of(p.scheme), p.kernel.solid_term, p.solid_reason));
+    report.line("solids", fmt::format("{}, {} [{}]", name_of(p.scheme),
+                                      name_of(p.kernel.solid_term), p.solid_reason));
   if (!p.expected_error.empty()) report.line("error", p.expected_error);
 }
 
@@ -257,10 +250,11 @@ void add_fluid_parts(const Scene& s, const Plan& p, Parts& parts) {
 
 void add_solid_parts(const Scene& s, const Plan& p, Parts& parts) {
   const bool imb = p.scheme == SolidScheme::ImmersedMovingBoundary;
-  parts.add(p.kernel.solid_term != "none" || !imb,
-            imb ? "covered cells " + p.kernel.solid_term + weight_text(p.kernel) + ", loads"
-                : name_of(p.scheme) + ", loads",
-            "solids");
+  parts.add(
+      p.kernel.solid_term != SolidTerm::None || !imb,
+      imb ? "covered cells " + name_of(p.kernel.solid_term) + weight_text(p.kernel) + ", loads"
+          : name_of(p.scheme) + ", loads",
+      "solids");
   const auto moving = std::ranges::count_if(
       s.obstacles, [](const ObstacleScene& o) { return o.motion.has_value(); });
   parts.add(!s.obstacles.empty(),
@@ -291,7 +285,7 @@ std::vector<Body> known_bodies(const Scene& s, const Plan& p) {
 }  // namespace
 
 std::string describe_cost(const Scene& s, const Plan& p) {
-  Parts parts(p.kernel.lattice + ", collision " + name_of(p.kernel.collision));
+  Parts parts(name_of(p.kernel.lattice) + ", collision " + name_of(p.kernel.collision));
   add_fluid_parts(s, p, parts);
   add_solid_parts(s, p, parts);
   Fluid fluid = make_fluid(s, p);

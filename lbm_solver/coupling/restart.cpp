@@ -54,10 +54,10 @@ bool is_or_is_in(const std::string& key, const std::string& table) {
 Settings planned(const Plan& plan) {
   const auto& d = plan.domain;
   return {{"plan.cells", fmt::format("{} x {} x {}", d.nx, d.ny, d.nz)},
-          {"plan.populations", fmt::format("{}", plan.kernel.lattice)},
-          {"plan.precision", plan.kernel.precision == Precision::Single ? "single" : "double"},
+          {"plan.populations", name_of(plan.kernel.lattice)},
+          {"plan.precision", name_of(plan.kernel.precision)},
           {"plan.collision", name_of(plan.kernel.collision)},
-          {"plan.solid_term", plan.kernel.solid_term},
+          {"plan.solid_term", name_of(plan.kernel.solid_term)},
           {"plan.scheme", name_of(plan.scheme)},
           {"plan.tau", fmt::format("{}", plan.kernel.parameters.tau)},
           {"plan.time_step", fmt::format("{}", plan.wished_step)},

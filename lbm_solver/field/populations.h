@@ -12,9 +12,6 @@
 
 namespace lbm {
 
-/// Type in which populations are stored. Sums of forces and masses are double in both.
-enum class Precision { Double, Single };
-
 /// Storage of one lattice: one padded array a direction (structure of arrays), each with a ghost
 /// layer on every side (none in z in two dimensions). Stored are deviations from rest, f_i - w_i,
 /// so that a fluid at rest is exactly zero and round-off is relative to the motion; single

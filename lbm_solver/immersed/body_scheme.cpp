@@ -8,37 +8,6 @@
 
 namespace lbm {
 
-std::vector<SolidScheme> known_schemes() {
-  return {SolidScheme::ImmersedMovingBoundary, SolidScheme::BounceBack,
-          SolidScheme::InterpolatedBounceBack, SolidScheme::ImplicitImmersedBoundary,
-          SolidScheme::SpringImmersedBoundary};
-}
-
-std::string name_of(SolidScheme scheme) {
-  switch (scheme) {
-    case SolidScheme::ImmersedMovingBoundary:
-      return "immersed_moving_boundary";
-    case SolidScheme::BounceBack:
-      return "bounce_back";
-    case SolidScheme::InterpolatedBounceBack:
-      return "interpolated_bounce_back";
-    case SolidScheme::ImplicitImmersedBoundary:
-      return "implicit_immersed_boundary";
-    case SolidScheme::SpringImmersedBoundary:
-      return "spring_immersed_boundary";
-  }
-  return "";
-}
-
-SolidScheme solid_scheme(const std::string& name) {
-  std::string known;
-  for (const SolidScheme scheme : known_schemes()) {
-    if (name_of(scheme) == name) return scheme;
-    known += " " + name_of(scheme);
-  }
-  throw std::invalid_argument("no scheme '" + name + "'; known:" + known);
-}
-
 std::unique_ptr<BodyScheme> make_scheme(SolidScheme scheme, const Domain& domain,
                                         const Lattice& lattice, double spring_stiffness) {
   switch (scheme) {

@@ -3,9 +3,9 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "lbm_solver/base/choices.h"
 #include "lbm_solver/base/record.h"
 #include "lbm_solver/field/esoteric_pull.h"
 #include "lbm_solver/immersed/body.h"
@@ -40,21 +40,6 @@ class BodyScheme {
  protected:
   Vec3 body_force_ = Vec3::Zero();  // rho u = Σ c f + F/2
 };
-
-/// How solids act on the fluid.
-enum class SolidScheme {
-  ImmersedMovingBoundary,  ///< covered cells of the sweep; the others are each a BodyScheme
-  BounceBack,
-  InterpolatedBounceBack,
-  ImplicitImmersedBoundary,
-  SpringImmersedBoundary,
-};
-/// All of them, in the order of the enumeration.
-std::vector<SolidScheme> known_schemes();
-/// As a scene and a report write it, e.g. "immersed_moving_boundary".
-std::string name_of(SolidScheme scheme);
-/// @throws std::invalid_argument naming the known ones
-SolidScheme solid_scheme(const std::string& name);
 
 /// @param scheme            not the immersed moving boundary; in three dimensions links only
 /// @param spring_stiffness  of the spring scheme, force a surface element and stretch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <string>
+#include "lbm_solver/base/choices.h"
 
 namespace lbm {
 
@@ -19,6 +19,6 @@ struct RadiusShift {
 };
 
 /// Of a solid collision; none where it has no such correction.
-RadiusShift radius_shift(const std::string& solid_term, int dimension);
+RadiusShift radius_shift(SolidTerm solid_term, int dimension);
 
 }  // namespace lbm

@@ -5,28 +5,28 @@
 
 namespace lbm {
 
-ResistanceCollision::ResistanceCollision(const std::string& term,
-                                         const CollisionParameters& parameters)
+ResistanceCollision::ResistanceCollision(SolidTerm term, const CollisionParameters& parameters)
     : tau_(parameters.tau), mu_zero_(2.0 - 16.0 / 3.0 * parameters.magic) {
-  const SolidTerm rows = solid_term(term, parameters.tau);
+  const SolidTermRows rows = solid_term_rows(term, parameters.tau);
   const auto choice = [&](auto&& of) {
     return LaneChoice(of(rows.surface), of(rows.whole), of(rows.core), of(rows.wall));
   };
-  momentum_ = choice([](const SolidTerm::Halves& h) { return h.odd.solid; });
-  ghost_ = choice([](const SolidTerm::Halves& h) { return -h.odd.f; });
-  even_ = choice([](const SolidTerm::Halves& h) { return -h.even.f; });
-  even_at_fluid_ = choice([](const SolidTerm::Halves& h) { return h.even.fluid; });
-  even_at_solid_ = choice([](const SolidTerm::Halves& h) { return h.even.solid; });
+  momentum_ = choice([](const SolidTermRows::Halves& h) { return h.odd.solid; });
+  ghost_ = choice([](const SolidTermRows::Halves& h) { return -h.odd.f; });
+  even_ = choice([](const SolidTermRows::Halves& h) { return -h.even.f; });
+  even_at_fluid_ = choice([](const SolidTermRows::Halves& h) { return h.even.fluid; });
+  even_at_solid_ = choice([](const SolidTermRows::Halves& h) { return h.even.solid; });
 }
 
-RadiusShift radius_shift(const std::string& solid_term, int dimension) {
+RadiusShift radius_shift(SolidTerm solid_term, int dimension) {
   if (!by_resistance(solid_term)) return {};
   return dimension == 2 ? RadiusShift{-0.02, 0.13} : RadiusShift{-0.005, 0.16};
 }
 
-double load_lag(const std::string& solid_term, double tau) {
+double load_lag(SolidTerm solid_term, double tau) {
   if (!by_resistance(solid_term)) return 0.0;
-  const double momentum = solid_term == "resistance" ? 2.0 : ShellExchange(tau - 0.5).momentum;
+  const double momentum =
+      solid_term == SolidTerm::Resistance ? 2.0 : ShellExchange(tau - 0.5).momentum;
   return (momentum - 1.0) / momentum;
 }
 

@@ -78,7 +78,7 @@ struct ShellExchange {
 /// K up to 2, of which it keeps (1 - K) w until the next step: what the solid got from the flow is
 /// the change of what it and the cells it covers hold, F_k + (K-1)/K (F_{k-1} - F_k). Where K = 2
 /// it is the mean of two steps, which does not ring. 0 for terms whose whole cells take K = 1.
-double load_lag(const std::string& solid_term, double tau);
+double load_lag(SolidTerm solid_term, double tau);
 
 /// Collision of a covered cell by resistance: TRT, in which the solid pulls the odd half towards
 /// its own velocity, while the even half relaxes as in fluid. Every coefficient of a cell at the
@@ -87,9 +87,9 @@ double load_lag(const std::string& solid_term, double tau);
 /// the whole cell, as a pressure gradient would.
 class ResistanceCollision {
  public:
-  /// @param term       "resistance" or "layered_resistance"
+  /// @param term       by resistance
   /// @param parameters relaxation time and Λ of TRT
-  ResistanceCollision(const std::string& term, const CollisionParameters& parameters);
+  ResistanceCollision(SolidTerm term, const CollisionParameters& parameters);
 
   /// @param f        populations [q] that arrived; overwritten
   /// @param collide  TRT of pure fluid

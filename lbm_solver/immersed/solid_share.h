@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <string>
-
 #include "lbm_solver/immersed/resistance.h"
 
 namespace lbm {
@@ -19,9 +17,8 @@ namespace lbm {
 /// streaming brought there, some tens of per cent of the flow outside even in a body at rest.
 class SolidShare {
  public:
-  /// @param term        one of known_solid_terms(), or "none"
   /// @param parameters  of the collision: relaxation time and Λ
-  SolidShare(const std::string& term, WeightRule rule, const CollisionParameters& parameters)
+  SolidShare(SolidTerm term, WeightRule rule, const CollisionParameters& parameters)
       : by_resistance_(by_resistance(term)),
         weight_(rule, parameters.tau),
         mu_zero_(2.0 - 16.0 / 3.0 * parameters.magic) {}

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-#include <string>
-#include <vector>
-
+#include "lbm_solver/base/choices.h"
 #include "lbm_solver/base/simd.h"
 #include "lbm_solver/collision/equilibrium.h"
 #include "lbm_solver/collision/forcing.h"
@@ -19,7 +17,7 @@ namespace lbm {
 ///   Ω^s± = f_part f± + fluid_part f±^eq(rho, u) + solid_part f±^eq(rho, u_s)
 /// The even parts add up to zero (mass), the odd ones too: Σ c_i Ω_i^s = k rho (u_s - u) with
 /// k = odd.solid_part.
-struct SolidTerm {
+struct SolidTermRows {
   struct Parts {
     double f, fluid, solid;
   };
@@ -31,13 +29,12 @@ struct SolidTerm {
   Halves surface, whole, core, wall;
 };
 
-/// A term by its name. The two by resistance have no row for cells at the surface: their collision
-/// (ResistanceCollision) is not linear in a weight. @param tau  relaxation time of the viscosity
-/// @throws std::invalid_argument naming the known ones
-SolidTerm solid_term(const std::string& name, double tau);
+/// The rows of a term. The two by resistance have none for cells at the surface: their collision
+/// (ResistanceCollision) is not linear in a weight.
+/// @param term  not SolidTerm::None @param tau  relaxation time of the viscosity
+SolidTermRows solid_term_rows(SolidTerm term, double tau);
 /// Whether a term's cells collide by resistance. Those need TRT.
-bool by_resistance(const std::string& name);
-std::vector<std::string> known_solid_terms();
+bool by_resistance(SolidTerm term);
 
 /// What the cover map knows of a cell.
 template <class L>
@@ -99,16 +96,17 @@ class CoveredCollision {
  public:
   /// @param collide  the operator of pure fluid
   template <class Collision>
-  CoveredCollision(const SolidTerm& term, const ImmersedWeight& weight, const Collision& collide)
+  CoveredCollision(const SolidTermRows& rows, const ImmersedWeight& weight,
+                   const Collision& collide)
       : weight_(weight) {
     if constexpr (Collision::constant_rates) {
-      even_ = factors(term, &SolidTerm::Halves::even,
+      even_ = factors(rows, &SolidTermRows::Halves::even,
                       {1.0 - collide.even_rate(), collide.even_rate(), 0.0});
-      odd_ = factors(term, &SolidTerm::Halves::odd,
+      odd_ = factors(rows, &SolidTermRows::Halves::odd,
                      {1.0 - collide.odd_rate(), collide.odd_rate(), 0.0});
     } else {
-      even_ = factors(term, &SolidTerm::Halves::even, {0.0, 0.0, 0.0});
-      odd_ = factors(term, &SolidTerm::Halves::odd, {0.0, 0.0, 0.0});
+      even_ = factors(rows, &SolidTermRows::Halves::even, {0.0, 0.0, 0.0});
+      odd_ = factors(rows, &SolidTermRows::Halves::odd, {0.0, 0.0, 0.0});
     }
   }
 
@@ -173,8 +171,9 @@ class CoveredCollision {
   };
 
   /// @param own  what the fluid's collision makes of each
-  static Factors factors(const SolidTerm& term, SolidTerm::Parts SolidTerm::Halves::*half,
-                         const SolidTerm::Parts& own);
+  static Factors factors(const SolidTermRows& rows,
+                         SolidTermRows::Parts SolidTermRows::Halves::*half,
+                         const SolidTermRows::Parts& own);
 
   ImmersedWeight weight_;
   Factors even_, odd_;

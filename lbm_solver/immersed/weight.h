@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-namespace lbm {
+#include "lbm_solver/base/choices.h"
 
-/// How the weight B of the solid's collision follows from the solid fraction ε of a cell; s = τ -
-/// ½:
-///   B = ε s / ((1 - ε) c(s) + s)
-enum class WeightRule {
-  Viscous,   ///< c = 1, paper A Eq 34
-  Balanced,  ///< c = 1 - s/2
-  Fraction,  ///< c = 0: B = ε
-};
+namespace lbm {
 
 /// Weight of the solid's collision in a covered cell.
 ///

@@ -118,10 +118,10 @@ void settle_viscosity(const TableReader& root, Scene& scene) {
     root.fail("fluid.viscosity.smagorinsky", "stands beside numerics.smagorinsky",
               "give one of them");
   constant = std::max(constant, law.smagorinsky);
-  if (scene.numerics.wale && constant == 0.0)
+  if (scene.numerics.eddies == EddyModel::Wale && constant == 0.0)
     root.fail("numerics.eddy_viscosity", "= \"wale\" stands without its constant",
               "give numerics.smagorinsky, e.g. 0.1");
-  if (scene.numerics.wale && parts_of(law.model).varies)
+  if (scene.numerics.eddies == EddyModel::Wale && parts_of(law.model).varies)
     root.fail(
         "numerics.eddy_viscosity",
         "= \"wale\" stands beside a viscosity that depends on the shear rate, whose table has "

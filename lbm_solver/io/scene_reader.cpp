@@ -17,6 +17,7 @@
 #include "lbm_solver/io/output_reader.h"
 #include "lbm_solver/io/script_variables.h"
 #include "lbm_solver/io/table_reader.h"
+#include "lbm_solver/lattice/lattice.h"
 #include "protocol/program/input_file.h"
 
 namespace lbm {
@@ -77,6 +78,27 @@ BoxScene read_box(TableReader t) {
   return box;
 }
 
+template <Choice E>
+E choice_or(TableReader& t, const char* key, E fallback) {
+  return from_name<E>(t.choice_or(key, name_of(fallback), names_of(choices<E>())));
+}
+
+/// Nothing where the scene says "auto".
+template <Choice E>
+std::optional<E> choice_or_auto(TableReader& t, const char* key,
+                                const std::vector<E>& known = choices<E>()) {
+  std::vector<std::string> names = names_of(known);
+  names.insert(names.begin(), "auto");
+  const std::string name = t.choice_or(key, "auto", names);
+  return name == "auto" ? std::nullopt : std::optional(from_name<E>(name));
+}
+
+std::vector<VelocitySet> sets_of(int dimension) {
+  std::vector<VelocitySet> sets = choices<VelocitySet>();
+  std::erase_if(sets, [dimension](VelocitySet set) { return lattice(set).D != dimension; });
+  return sets;
+}
+
 NumericsScene read_numerics(TableReader t, int d) {
   NumericsScene n;
   n.cell = t.optional_number("cell", Bounds::positive(), "m");
@@ -85,26 +107,17 @@ NumericsScene read_numerics(TableReader t, int d) {
     t.fail("cell", n.cell ? "stands beside cells_per_diameter" : "is missing",
            "give either cell [m] or cells_per_diameter");
   n.time_step = t.optional_number("time_step", Bounds::positive(), "s");
-  n.lattice = t.choice_or("lattice", n.lattice,
-                          d == 2 ? std::vector<std::string>{"auto", "D2Q9"}
-                                 : std::vector<std::string>{"auto", "D3Q19", "D3Q27"});
-  n.single = t.choice_or("precision", "double", {"double", "single"}) == "single";
-  n.collision = t.choice_or("collision", n.collision,
-                            {"auto", "bgk", "trt", "central_moment", "recursive_regularised"});
-  n.solid_term =
-      t.choice_or("solid_term", n.solid_term,
-                  {"auto", "resistance", "layered_resistance", "layered_holdych",
-                   "layered_noble_torczynski", "holdych", "noble_torczynski", "superposition"});
-  n.scheme =
-      t.choice_or("scheme", n.scheme,
-                  {"auto", "immersed_moving_boundary", "bounce_back", "interpolated_bounce_back",
-                   "implicit_immersed_boundary", "spring_immersed_boundary"});
+  n.lattice = choice_or_auto(t, "lattice", sets_of(d));
+  n.precision = choice_or(t, "precision", n.precision);
+  n.collision = choice_or_auto<CollisionOperator>(t, "collision");
+  n.solid_term = choice_or_auto<SolidTerm>(t, "solid_term");
+  n.scheme = choice_or_auto<SolidScheme>(t, "scheme");
   n.spring_stiffness = t.number_or("spring_stiffness", n.spring_stiffness, Bounds::positive(), "");
-  n.weight = t.choice_or("weight", n.weight, {"auto", "viscous", "balanced", "fraction"});
+  n.weight = choice_or_auto<WeightRule>(t, "weight");
   n.equal_work = t.choice_or("blocks", "equal", {"equal", "equal_work"}) == "equal_work";
   n.waiting_bound = t.number_or("waiting_bound", n.waiting_bound, {0.0, 1.0}, "");
   n.smagorinsky = t.number_or("smagorinsky", 0.0, {0.0, 1.0}, "");
-  n.wale = t.choice_or("eddy_viscosity", "smagorinsky", {"smagorinsky", "wale"}) == "wale";
+  n.eddies = choice_or(t, "eddy_viscosity", n.eddies);
   n.magic = t.optional_number("magic", {1e-6, 10.0}, "");
   t.finish();
   return n;

@@ -3,9 +3,7 @@
 /// unrolled; passes over cells and links take `Lattice`, the same numbers at run time.
 #pragma once
 
-#include <array>
-#include <string>
-#include <vector>
+#include "lbm_solver/base/choices.h"
 
 namespace lbm {
 
@@ -17,7 +15,7 @@ constexpr int opposite(int q) {
 
 /// Velocities c, weights w, speed of sound c_s² = 1/3.
 struct D2Q9 {
-  static constexpr const char* name = "D2Q9";
+  static constexpr VelocitySet id = VelocitySet::D2Q9;
   static constexpr int D = 2, Q = 9, pairs = 4;
   static constexpr int c[Q][3] = {{0, 0, 0}, {1, 0, 0},   {-1, 0, 0}, {0, 1, 0}, {0, -1, 0},
                                   {1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}};
@@ -27,7 +25,7 @@ struct D2Q9 {
 
 /// Nineteen velocities: no corners of the cube.
 struct D3Q19 {
-  static constexpr const char* name = "D3Q19";
+  static constexpr VelocitySet id = VelocitySet::D3Q19;
   static constexpr int D = 3, Q = 19, pairs = 9;
   static constexpr int c[Q][3] = {{0, 0, 0},  {1, 0, 0},   {-1, 0, 0},  {0, 1, 0},   {0, -1, 0},
                                   {0, 0, 1},  {0, 0, -1},  {1, 1, 0},   {-1, -1, 0}, {1, -1, 0},
@@ -41,7 +39,7 @@ struct D3Q19 {
 
 /// All twenty-seven: the product of three one-dimensional sets.
 struct D3Q27 {
-  static constexpr const char* name = "D3Q27";
+  static constexpr VelocitySet id = VelocitySet::D3Q27;
   static constexpr int D = 3, Q = 27, pairs = 13;
   static constexpr int c[Q][3] = {
       {0, 0, 0},  {1, 0, 0},   {-1, 0, 0},  {0, 1, 0},   {0, -1, 0},  {0, 0, 1},   {0, 0, -1},
@@ -65,7 +63,7 @@ constexpr int direction(int x, int y, int z) {
 
 /// A velocity set at run time.
 struct Lattice {
-  const char* name;
+  VelocitySet id;
   int D, Q;
   const int (*c)[3];
   const double* w;
@@ -73,11 +71,9 @@ struct Lattice {
 
 template <class L>
 constexpr Lattice to_lattice() {
-  return {L::name, L::D, L::Q, L::c, L::w};
+  return {L::id, L::D, L::Q, L::c, L::w};
 }
 
-/// @throws std::invalid_argument naming the known ones
-const Lattice& lattice(const std::string& name);
-std::vector<std::string> known_lattices();
+const Lattice& lattice(VelocitySet id);
 
 }  // namespace lbm

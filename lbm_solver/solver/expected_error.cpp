@@ -76,15 +76,15 @@ constexpr Row kLayeredHoldychSpheres[] = {
     {0.5236, {4.0, 5.0, 6.0, 8.0, 10.0, 16.0}, {-70.3, -59.5, -49.0, -35.2, -25.8, -11.0}},
 };
 
-std::span<const Row> rows_of(const std::string& term, int dimension) {
+std::span<const Row> rows_of(SolidTerm term, int dimension) {
   const bool flat = dimension == 2;
   const auto pick = [flat](std::span<const Row> discs, std::span<const Row> spheres) {
     return flat ? discs : spheres;
   };
-  if (term == "resistance") return pick(kRestDiscs, kRestSpheres);
-  if (term == "layered_resistance") return pick(kMovingDiscs, kMovingSpheres);
-  if (term == "holdych") return pick(kHoldychDiscs, kHoldychSpheres);
-  if (term == "layered_holdych") return pick(kLayeredHoldychDiscs, kLayeredHoldychSpheres);
+  if (term == SolidTerm::Resistance) return pick(kRestDiscs, kRestSpheres);
+  if (term == SolidTerm::LayeredResistance) return pick(kMovingDiscs, kMovingSpheres);
+  if (term == SolidTerm::Holdych) return pick(kHoldychDiscs, kHoldychSpheres);
+  if (term == SolidTerm::LayeredHoldych) return pick(kLayeredHoldychDiscs, kLayeredHoldychSpheres);
   return {};
 }
 
@@ -132,7 +132,7 @@ bool tabulated(const KernelChoice& k) {
 std::optional<ExpectedError> expected_error(const KernelChoice& kernel, int dimension,
                                             double fraction, double diameter) {
   if (dimension == 2 && kernel.collision == CollisionOperator::CentralMoment &&
-      kernel.solid_term == "layered_noble_torczynski")
+      kernel.solid_term == SolidTerm::LayeredNobleTorczynski)
     return of_central_moments(kernel.parameters.tau, diameter);
   const std::span<const Row> rows = rows_of(kernel.solid_term, dimension);
   if (rows.empty() || !tabulated(kernel)) return std::nullopt;

@@ -20,7 +20,7 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
       choice_(choice),
       kernel_(make_kernel(choice)),
       halo_(ranks.alone() ? nullptr : std::make_unique<HaloExchange>(*ranks_, f_)),
-      cover_(choice.solid_term == "none"
+      cover_(choice.solid_term == SolidTerm::None
                  ? nullptr
                  : std::make_unique<CoverMap>(
                        domain(), cells(), radius_shift(choice.solid_term, domain().dimension()))),
@@ -38,7 +38,7 @@ Fluid::Fluid(const Decomposition& ranks, const KernelChoice& choice)
     medium_.eddies = &wale_->field();
   }
   if (lattice().D != domain().dimension())
-    throw std::invalid_argument(std::string(lattice().name) + " for a box of " +
+    throw std::invalid_argument(name_of(lattice().id) + " for a box of " +
                                 std::to_string(domain().dimension()) + " dimensions");
 }
 

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
 
-#include "lbm_solver/collision/collision_operator.h"
+#include "lbm_solver/base/choices.h"
 #include "lbm_solver/collision/parameters.h"
 #include "lbm_solver/field/esoteric_pull.h"
 #include "lbm_solver/immersed/cover_map.h"
@@ -40,11 +38,11 @@ class Kernel {
 /// What a scene asks of the kernel; a row of the kernel table.
 struct KernelChoice {
   CollisionOperator collision = CollisionOperator::Trt;
-  bool force = false;               ///< uniform body force
-  std::string solid_term = "none";  ///< "none" or one of known_solid_terms()
+  bool force = false;  ///< uniform body force
+  SolidTerm solid_term = SolidTerm::None;
   CollisionParameters parameters;
   WeightRule weight = WeightRule::Viscous;
-  std::string lattice = "D2Q9";  ///< one of known_lattices()
+  VelocitySet lattice = VelocitySet::D2Q9;
   Precision precision = Precision::Double;
   EddyModel eddies = EddyModel::Smagorinsky;
 
@@ -54,7 +52,7 @@ struct KernelChoice {
   }
 };
 
-/// @throws std::invalid_argument naming the rows, or the solid terms, that exist
+/// @throws std::invalid_argument naming the rows that exist
 std::unique_ptr<Kernel> make_kernel(const KernelChoice& choice);
 
 }  // namespace lbm

@@ -13,7 +13,7 @@ namespace lbm {
 
 struct KernelTableRow {
   CollisionOperator collision;
-  std::string lattice;
+  VelocitySet lattice;
   Precision precision;
   bool local_viscosity, force;
   std::unique_ptr<Kernel> (*make)(const KernelChoice&);
@@ -37,7 +37,7 @@ std::unique_ptr<Kernel> make_row_kernel(const KernelChoice& c) {
 template <class Collision, class Real>
 void add_row(KernelRows& rows, CollisionOperator collision) {
   rows.push_back({.collision = collision,
-                  .lattice = Collision::Set::name,
+                  .lattice = Collision::Set::id,
                   .precision = std::is_same_v<Real, double> ? Precision::Double : Precision::Single,
                   .local_viscosity = Collision::local_viscosity,
                   .force = Collision::forced,

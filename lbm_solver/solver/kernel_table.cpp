@@ -34,10 +34,9 @@ bool same(const KernelTableRow& a, const KernelTableRow& b) {
 }
 
 std::string text(const KernelTableRow& r) {
-  return fmt::format("{} {} {} + {} + {}", r.lattice,
-                     r.precision == Precision::Double ? "double" : "single", name_of(r.collision),
-                     r.local_viscosity ? "local viscosity" : "constant viscosity",
-                     r.force ? "force" : "no force");
+  return fmt::format(
+      "{} {} {} + {} + {}", name_of(r.lattice), name_of(r.precision), name_of(r.collision),
+      r.local_viscosity ? "local viscosity" : "constant viscosity", r.force ? "force" : "no force");
 }
 
 }  // namespace
@@ -55,7 +54,7 @@ std::unique_ptr<Kernel> make_kernel(const KernelChoice& c) {
     lattice_is_there |= row.lattice == wanted.lattice;
   }
   if (!lattice_is_there)
-    throw InputError("this program was built without the lattice " + wanted.lattice,
+    throw InputError("this program was built without the lattice " + name_of(wanted.lattice),
                      "take lbm, which has all of them; tools/build makes it");
   std::string known;
   for (const KernelTableRow& row : table()) known += "\n  " + text(row);

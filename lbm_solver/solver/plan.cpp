@@ -157,56 +157,53 @@ void take_scheme(const Scene& s, Plan& plan) {
   if (shapes)
     throw InputError(fmt::format("{}: numerics.scheme = \"{}\" knows discs, spheres and blocks "
                                  "at rest, no meshes and images",
-                                 s.file, n.scheme),
+                                 s.file, name_of(*n.scheme)),
                      "take scheme = \"immersed_moving_boundary\"");
-  if (n.solid_term != "auto")
+  if (n.solid_term)
     throw InputError(s.file + ": numerics.solid_term", "belongs to another scheme",
                      "leave it out, or take scheme = \"immersed_moving_boundary\"");
-  plan.scheme = solid_scheme(n.scheme);
+  plan.scheme = *n.scheme;
   const bool links =
       plan.scheme == SolidScheme::BounceBack || plan.scheme == SolidScheme::InterpolatedBounceBack;
   if (s.box.dimension == 3 && !links)
     throw InputError(fmt::format("{}: numerics.scheme = \"{}\" is there in two dimensions only",
-                                 s.file, n.scheme),
+                                 s.file, name_of(*n.scheme)),
                      "take immersed_moving_boundary, bounce_back or interpolated_bounce_back");
   // walls are covered cells under any scheme
   if (std::ranges::any_of(s.obstacles, [](const ObstacleScene& o) { return o.block(); }))
-    plan.kernel.solid_term = "noble_torczynski";
+    plan.kernel.solid_term = SolidTerm::NobleTorczynski;
 }
 
 /// The solid collision operator of covered cells, where the scene leaves it open.
 void choose_solid_term(const Scene& s, Plan& plan) {
-  const auto take = [&](const char* term, const char* reason) {
+  const auto take = [&](SolidTerm term, const char* reason) {
     plan.kernel.solid_term = term;
     plan.solid_reason = std::string("auto: ") + reason;
   };
   const bool moving = std::ranges::any_of(
       s.obstacles, [](const ObstacleScene& o) { return o.motion || !o.spin.isZero(0.0); });
   if (plan.kernel.collision != CollisionOperator::Trt)
-    take("layered_noble_torczynski", "least noise where the fluid is under-resolved");
+    take(SolidTerm::LayeredNobleTorczynski, "least noise where the fluid is under-resolved");
   else if (s.coupling || moving)
-    take("layered_resistance", "exact on planes at every τ, and calm in bodies that move");
+    take(SolidTerm::LayeredResistance, "exact on planes at every τ, and calm in bodies that move");
   else
-    take("resistance", "exact on planes at every τ");
+    take(SolidTerm::Resistance, "exact on planes at every τ");
 }
 
 void choose_solids(const Scene& s, Plan& plan) {
   const NumericsScene& n = s.numerics;
   KernelChoice& k = plan.kernel;
-  k.solid_term = "none";
+  k.solid_term = SolidTerm::None;
   if (!s.coupling && s.obstacles.empty()) return;
-  if (n.scheme != "auto" && n.scheme != name_of(plan.scheme)) return take_scheme(s, plan);
-  const bool balanced = n.weight == "balanced" || (n.weight == "auto" && s.box.dimension == 3);
-  k.weight = n.weight == "fraction" ? WeightRule::Fraction
-             : balanced             ? WeightRule::Balanced
-                                    : WeightRule::Viscous;
-  k.solid_term = n.solid_term;
-  if (by_resistance(n.solid_term) && k.collision != CollisionOperator::Trt)
+  if (n.scheme && *n.scheme != plan.scheme) return take_scheme(s, plan);
+  k.weight = n.weight.value_or(s.box.dimension == 3 ? WeightRule::Balanced : WeightRule::Viscous);
+  if (!n.solid_term) return choose_solid_term(s, plan);
+  k.solid_term = *n.solid_term;
+  if (by_resistance(k.solid_term) && k.collision != CollisionOperator::Trt)
     throw InputError(fmt::format("{}: numerics.solid_term = \"{}\" works with collision = \"trt\" "
                                  "only, which here is {}",
-                                 s.file, n.solid_term, name_of(k.collision)),
+                                 s.file, name_of(k.solid_term), name_of(k.collision)),
                      "take collision = \"trt\", or solid_term = \"auto\"");
-  if (n.solid_term == "auto") choose_solid_term(s, plan);
 }
 
 /// Λ of TRT: 3/16 puts a half-way wall half-way; beside covered cells by resistance 1/10.
@@ -265,8 +262,9 @@ void expect_error(const Scene& s, Plan& plan) {
   for (const double fraction : fractions) {
     const auto error = expected_error(plan.kernel, d, fraction, cells);
     if (!error) {
-      plan.expected_error = fmt::format("not tabulated for {} with {}: compare with a finer cell",
-                                        name_of(plan.kernel.collision), plan.kernel.solid_term);
+      plan.expected_error =
+          fmt::format("not tabulated for {} with {}: compare with a finer cell",
+                      name_of(plan.kernel.collision), name_of(plan.kernel.solid_term));
       return;
     }
     plan.expected_error +=
@@ -294,8 +292,8 @@ void choose_kernel(const Scene& s, Plan& plan) {
   plan.reynolds_cell = s.fluid.velocity_scale * dx / s.fluid.viscosity;
   const bool calm = plan.reynolds_cell <= kLimitReynoldsCell, les = n.smagorinsky > 0.0;
   KernelChoice& k = plan.kernel;
-  if (n.collision != "auto") {
-    k.collision = collision_operator(n.collision);
+  if (n.collision) {
+    k.collision = *n.collision;
   } else {
     k.collision = calm && !les ? CollisionOperator::Trt : CollisionOperator::CentralMoment;
     plan.collision_reason =
@@ -305,16 +303,16 @@ void choose_kernel(const Scene& s, Plan& plan) {
                   calm ? "at most" : "above", kLimitReynoldsCell,
                   calm ? "TRT is most accurate" : "TRT with fixed Λ gets noisy or unstable");
   }
-  k.lattice = n.lattice != "auto" ? n.lattice : s.box.dimension == 2 ? "D2Q9" : "D3Q19";
-  k.precision = n.single ? Precision::Single : Precision::Double;
-  if (n.single && k.collision == CollisionOperator::RecursiveRegularised)
+  k.lattice = n.lattice.value_or(s.box.dimension == 2 ? VelocitySet::D2Q9 : VelocitySet::D3Q19);
+  k.precision = n.precision;
+  if (n.precision == Precision::Single && k.collision == CollisionOperator::RecursiveRegularised)
     throw InputError(
         s.file +
             ": numerics.collision = \"recursive_regularised\" is there in double precision only",
         "take central_moment, or precision = \"double\"");
   k.force =
       s.fluid.body_force.norm() > 0.0 || s.fluid.flow || (s.coupling && s.coupling->carry_weight);
-  if (n.wale) k.eddies = EddyModel::Wale;
+  k.eddies = n.eddies;
   choose_solids(s, plan);
   const Vec3 force = s.fluid.body_force * (dt * dt / dx);
   k.parameters = {.tau = 0.5 + 3.0 * s.fluid.viscosity * dt / (dx * dx),

@@ -80,16 +80,17 @@ class RowKernel final : public Kernel {
 
  public:
   explicit RowKernel(const KernelChoice& c) : collide_(c.parameters) {
-    if (c.solid_term == "none") return;
+    if (c.solid_term == SolidTerm::None) return;
     if (!by_resistance(c.solid_term)) {
-      covered_.emplace(solid_term(c.solid_term, c.parameters.tau),
+      covered_.emplace(solid_term_rows(c.solid_term, c.parameters.tau),
                        ImmersedWeight(c.weight, c.parameters.tau), collide_);
       return;
     }
     if constexpr (Collision::fixed_magic)
       resistance_.emplace(c.solid_term, c.parameters);
     else
-      throw std::invalid_argument("solid term '" + c.solid_term + "' needs the collision trt");
+      throw std::invalid_argument("solid term '" + name_of(c.solid_term) +
+                                  "' needs the collision trt");
   }
 
   void sweep(Populations& f, const EsotericPull& stream, CoverMap* cover, const EddyField* eddies,

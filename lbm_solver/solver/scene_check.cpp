@@ -184,9 +184,10 @@ void check_idle_keys(const Scene& s, Plan& plan) {
                     s.fluid.body_force_ramp,
                     InTime{s.fluid.body_force_ramp / plan.units.dt, 0.0}.factor(
                         static_cast<std::int64_t>(s.end_time / plan.units.dt))));
-  if (s.numerics.weight != "auto" && by_resistance(plan.kernel.solid_term))
+  if (s.numerics.weight && by_resistance(plan.kernel.solid_term))
     plan.warnings.push_back(fmt::format("numerics.weight = \"{}\" has no effect: {} has no weight",
-                                        s.numerics.weight, plan.kernel.solid_term));
+                                        name_of(*s.numerics.weight),
+                                        name_of(plan.kernel.solid_term)));
 }
 
 /// Least width of an obstacle that the flow goes around [m]; nothing where it has none.

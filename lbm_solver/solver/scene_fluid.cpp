@@ -320,7 +320,7 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
     expect_fluid(s, fluid);
   }
   const bool moving =
-      p.kernel.solid_term != "none" &&
+      p.kernel.solid_term != SolidTerm::None &&
       std::ranges::any_of(s.obstacles, [](const auto& o) { return o.motion.has_value(); });
   if (s.initial.kind == InitialScene::Kind::Rest && !p.kernel.force && !moving) return fluid;
   const Block& cells = ranks.cells();

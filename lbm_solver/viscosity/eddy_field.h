@@ -8,9 +8,6 @@
 
 namespace lbm {
 
-/// How an eddy viscosity depends on the place.
-enum class EddyModel { Smagorinsky, Wale };
-
 /// A number for each cell by which Smagorinsky's eddy viscosity is multiplied there,
 ///   nu_t = κ (S_c h)² |S|.
 /// What sets κ is a model of turbulence near walls; without a field κ = 1.

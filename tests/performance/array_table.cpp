@@ -45,12 +45,13 @@ const std::vector<double> kDiameters{4, 5, 6, 8, 10, 16};
 const std::vector<Vec3>& kPlaces = test::kPlacesInACell;
 
 struct Term {
-  std::string term, what;
+  SolidTerm term;
+  std::string what;
 };
-const std::vector<Term> kTerms{{"resistance", "default, bodies at rest"},
-                               {"layered_resistance", "default, free bodies"},
-                               {"holdych", "former default, bodies at rest"},
-                               {"layered_holdych", "former default, free bodies"}};
+const std::vector<Term> kTerms{{SolidTerm::Resistance, "default, bodies at rest"},
+                               {SolidTerm::LayeredResistance, "default, free bodies"},
+                               {SolidTerm::Holdych, "former default, bodies at rest"},
+                               {SolidTerm::LayeredHoldych, "former default, free bodies"}};
 
 /// Mean over the box of rho u along an axis of what has arrived, half of the body force in it.
 double momentum(const Fluid& fluid, int axis = 0) {
@@ -79,7 +80,7 @@ double flux(Fluid& fluid, double half_force) {
 
 /// An array in a fluid that a body force drives along x.
 struct Flow {
-  Flow(const Array& a, const std::string& term, int cells, double tau, double reynolds)
+  Flow(const Array& a, SolidTerm term, int cells, double tau, double reynolds)
       : array(a), cells(cells), nu((tau - 0.5) / 3.0), radius(a.radius(cells)) {
     u = reynolds * nu / (2.0 * radius);
     g = a.exact(cells) * nu * u / a.volume(cells);
@@ -89,7 +90,7 @@ struct Flow {
         .solid_term = term,
         .parameters = {.tau = tau, .magic = by_resistance(term) ? kResistanceMagic : 3.0 / 16.0},
         .weight = a.dimension == 2 ? WeightRule::Viscous : WeightRule::Balanced,
-        .lattice = a.dimension == 2 ? "D2Q9" : "D3Q19"};
+        .lattice = a.dimension == 2 ? VelocitySet::D2Q9 : VelocitySet::D3Q19};
   }
   /// @param sense  1: the fluid is driven along x, -1: against it
   Fluid fluid(double sense) const {
@@ -120,8 +121,7 @@ struct Flow {
 
 /// Error of the drag at rest, Re_D = 0.01; not a number where it comes to no end. What cells below
 /// the surface hold leaves them slowly, in some 1000 steps, however fast the flow itself is.
-double error_of(const Array& array, const std::string& term, int cells, double tau,
-                const Vec3& place) {
+double error_of(const Array& array, SolidTerm term, int cells, double tau, const Vec3& place) {
   const Flow flow(array, term, cells, tau, 0.01);
   Fluid fluid = flow.fluid(1.0);
   fluid.place(std::vector{flow.body(place, Vec3())});
@@ -141,7 +141,7 @@ double error_of(const Array& array, const std::string& term, int cells, double t
 
 /// Bodies that move through the lattice at Re_D = 0.1 while the fluid is driven against them:
 /// error of the mean force and its standard deviation over the passage of four cells.
-nlohmann::json moving_row(const Array& array, const std::string& term, int cells, double tau) {
+nlohmann::json moving_row(const Array& array, SolidTerm term, int cells, double tau) {
   const Flow flow(array, term, cells, tau, 0.1);
   Fluid fluid = flow.fluid(-1.0);
   Body body = flow.body({0.0, 0.23, 0.41}, {flow.u, 0.0, 0.0});
@@ -159,7 +159,7 @@ nlohmann::json moving_row(const Array& array, const std::string& term, int cells
     relative += (flow.u - momentum(fluid) - 0.5 * flow.g) / steps;
   }
   return {{"body", array.name()},
-          {"solid_term", term},
+          {"solid_term", name_of(term)},
           {"fraction", array.fraction},
           {"tau", tau},
           {"cells", cells},
@@ -171,7 +171,7 @@ nlohmann::json moving_row(const Array& array, const std::string& term, int cells
 /// Bodies that move by their weight at Re_D = 0.1, the fluid driven against them as hard, with all
 /// that a coupled run does to their loads: error of the drag, which is known, by their speed
 /// against the flux, and the standard deviation of the force over the passage of four cells.
-nlohmann::json free_row(const Array& array, const std::string& term, int cells, double ratio) {
+nlohmann::json free_row(const Array& array, SolidTerm term, int cells, double ratio) {
   const Flow flow(array, term, cells, 1.0, 0.1);
   KernelChoice driven = flow.choice;
   driven.parameters.force_y = flow.g;
@@ -205,7 +205,7 @@ nlohmann::json free_row(const Array& array, const std::string& term, int cells, 
   }
   const double relative = speed + flux;
   return {{"body", array.name()},
-          {"solid_term", term},
+          {"solid_term", name_of(term)},
           {"fraction", array.fraction},
           {"ratio", ratio},
           {"cells", cells},
@@ -216,7 +216,7 @@ nlohmann::json free_row(const Array& array, const std::string& term, int cells, 
 
 struct Job {
   const Array* array;
-  std::string term;
+  SolidTerm term;
   int cells;
   double tau;
   std::vector<double> errors = std::vector<double>(kPlaces.size());
@@ -226,7 +226,7 @@ struct Job {
     for (const double e : errors) mean += 100.0 * e / static_cast<double>(errors.size());
     const auto [least, largest] = std::minmax_element(errors.begin(), errors.end());
     return {{"body", array->name()},
-            {"solid_term", term},
+            {"solid_term", name_of(term)},
             {"fraction", array->fraction},
             {"tau", tau},
             {"cells", cells},
@@ -276,7 +276,7 @@ nlohmann::json table_at_rest() {
     fmt::print("\n");
   };
   for (const Term& t : kTerms) {
-    fmt::print("\n| {}: {}, τ 1 |", t.what, t.term);
+    fmt::print("\n| {}: {}, τ 1 |", t.what, name_of(t.term));
     for (const double d : kDiameters) fmt::print(" D about {} |", d);
     fmt::print("\n|---|---|---|---|---|---|---|\n");
     for (const auto* arrays : {&kDiscs, &kSpheres})
@@ -289,7 +289,7 @@ nlohmann::json table_at_rest() {
   for (const double tau : taus) fmt::print(" τ {} |", tau);
   fmt::print("\n|---|---|---|---|---|---|\n");
   for (const Term& t : kTerms) {
-    fmt::print("| {}: {} |", t.what, t.term);
+    fmt::print("| {}: {} |", t.what, name_of(t.term));
     print(taus.size());
   }
   return list;
@@ -312,9 +312,9 @@ nlohmann::json table_of_moving() {
   fmt::print("\n| moving discs, τ 1 | D | error % | σ % |\n|---|---|---|---|\n");
   nlohmann::json list = nlohmann::json::array();
   for (const Passage& p : passages) {
-    fmt::print("| {}, c = {} | {:.1f} | {:+.2f} | {:.2f} |\n", p.term->term, p.array->fraction,
-               p.row["diameter"].get<double>(), p.row["error_percent"].get<double>(),
-               p.row["sigma_percent"].get<double>());
+    fmt::print("| {}, c = {} | {:.1f} | {:+.2f} | {:.2f} |\n", name_of(p.term->term),
+               p.array->fraction, p.row["diameter"].get<double>(),
+               p.row["error_percent"].get<double>(), p.row["sigma_percent"].get<double>());
     list.push_back(p.row);
   }
   return list;
@@ -341,8 +341,8 @@ nlohmann::json table_of_free() {
       "\n| free bodies, τ 1 | c | D | density | error % | σ % |\n|---|---|---|---|---|---|\n");
   nlohmann::json list = nlohmann::json::array();
   for (const Passage& p : passages) {
-    fmt::print("| {}s, {} | {} | {:.1f} | {} | {:+.2f} | {:.2f} |\n", p.array->name(), p.term->term,
-               p.array->fraction, p.row["diameter"].get<double>(), p.ratio,
+    fmt::print("| {}s, {} | {} | {:.1f} | {} | {:+.2f} | {:.2f} |\n", p.array->name(),
+               name_of(p.term->term), p.array->fraction, p.row["diameter"].get<double>(), p.ratio,
                p.row["error_percent"].get<double>(), p.row["sigma_percent"].get<double>());
     list.push_back(p.row);
   }

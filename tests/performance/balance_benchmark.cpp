@@ -92,9 +92,9 @@ class Run {
 
 void measure(const Domain& domain, const Array& array, double speed, int ranks) {
   const bool flat = domain.dimension() == 2;
-  const KernelChoice choice{.solid_term = "layered_resistance",
+  const KernelChoice choice{.solid_term = SolidTerm::LayeredResistance,
                             .parameters = {.tau = 0.7},
-                            .lattice = flat ? "D2Q9" : "D3Q19"};
+                            .lattice = flat ? VelocitySet::D2Q9 : VelocitySet::D3Q19};
   const Decomposition blocks(domain, MPI_COMM_WORLD,
                              flat ? Cell3{1, ranks, 1} : Cell3{1, 1, ranks});
   const std::vector<Body> bodies = packing(domain, array, speed);

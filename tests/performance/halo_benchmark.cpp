@@ -15,7 +15,7 @@ void measure(int n, int axis, int ranks) {
   cells[axis] = n * ranks;
   const Domain domain{cells[0], cells[1], Side::Periodic, Side::Periodic, cells[2], Side::Periodic};
   const Decomposition decomposition(domain, MPI_COMM_WORLD, grid);
-  Populations f(lattice("D3Q19"), decomposition.cells().size);
+  Populations f(lattice(VelocitySet::D3Q19), decomposition.cells().size);
   EsotericPull stream(decomposition.cells().faces);
   HaloExchange halo(decomposition, f);
   constexpr int warm = 20, count = 200;

@@ -31,7 +31,7 @@ struct Entry {
   double covered = 0.0, mlups = 0.0;
   bool moving = false;      ///< the bodies are placed anew in each step
   bool one_by_one = false;  ///< a parallel region a step instead of one for all
-  std::string lattice = "D2Q9";
+  VelocitySet lattice = VelocitySet::D2Q9;
   Precision precision = Precision::Double;
 };
 
@@ -92,7 +92,7 @@ void kernel_benchmark(benchmark::State& state, const Entry& e, KernelChoice choi
   Fluid fluid(box(e), choice);
   stir(fluid);
   std::vector<Body> bodies = packing(e);
-  if (choice.solid_term != "none") fluid.place(bodies);
+  if (choice.solid_term != SolidTerm::None) fluid.place(bodies);
   const int steps = steps_for(e);
   const bool together = e.covered == 0.0 && !e.one_by_one;
   for (auto _ : state) {
@@ -119,9 +119,9 @@ void aos_steps(benchmark::State& state, const Entry& e) {
 }
 
 void aos_benchmark(benchmark::State& state, const Entry& e) {
-  if (e.lattice == "D2Q9") aos_steps<D2Q9>(state, e);
-  if (e.lattice == "D3Q19") aos_steps<D3Q19>(state, e);
-  if (e.lattice == "D3Q27") aos_steps<D3Q27>(state, e);
+  if (e.lattice == VelocitySet::D2Q9) aos_steps<D2Q9>(state, e);
+  if (e.lattice == VelocitySet::D3Q19) aos_steps<D3Q19>(state, e);
+  if (e.lattice == VelocitySet::D3Q27) aos_steps<D3Q27>(state, e);
 }
 
 /// One part of a particle's cost, for 49 and for 10 000 discs of ten cells: items are particles.
@@ -197,13 +197,9 @@ void add(const Entry& e, Function&& run) {
   benchmark::RegisterBenchmark(e.name.c_str(), run)->Repetitions(7)->MinTime(0.15)->UseRealTime();
 }
 
-const char* text(Precision p) {
-  return p == Precision::Double ? "double" : "single";
-}
-
 /// What an entry runs on.
 struct Setting {
-  std::string lattice;
+  VelocitySet lattice;
   Precision precision;
   int grid;
 
@@ -217,7 +213,8 @@ struct Setting {
     return e;
   }
   std::string label(const std::string& what, int threads = 1) const {
-    return fmt::format("{} {} {} {} {}t", lattice, text(precision), what, grid, threads);
+    return fmt::format("{} {} {} {} {}t", name_of(lattice), name_of(precision), what, grid,
+                       threads);
   }
 };
 
@@ -240,7 +237,7 @@ void register_setting(const Setting& on, int threads) {
     Entry one_by_one = on.entry("trt one by one", t);
     one_by_one.one_by_one = true;
     add_kernel(one_by_one, {});
-    for (const CollisionOperator collision : known_collisions())
+    for (const CollisionOperator collision : choices<CollisionOperator>())
       if (on.precision == Precision::Double || collision != CollisionOperator::RecursiveRegularised)
         add_kernel(on.entry(name_of(collision), t), {.collision = collision});
   }
@@ -251,8 +248,8 @@ void register_setting(const Setting& on, int threads) {
                {.collision = collision, .parameters = {.viscosity_table = gel()}});
   }
   add_kernel(on.entry("trt+force"), {.force = true, .parameters = {.force_x = 1e-7}});
-  const KernelChoice solids{.solid_term = "layered_resistance"};
-  const KernelChoice linear{.solid_term = "layered_holdych"};
+  const KernelChoice solids{.solid_term = SolidTerm::LayeredResistance};
+  const KernelChoice linear{.solid_term = SolidTerm::LayeredHoldych};
   for (const double covered : {0.0, 0.1, 0.15, 0.4})
     for (const bool moving : {false, true}) {
       if (covered == 0.0 && moving) continue;
@@ -305,9 +302,9 @@ nlohmann::json report(const Collector& c) {
     fmt::print("{:42} {:>8.0f} {:>6.2f} {:>8.2f} {:>12.1f}\n", e.name, rate * 1e-6, roof, pure,
                baseline);
     list.push_back({{"name", e.name},
-                    {"lattice", e.lattice},
+                    {"lattice", name_of(e.lattice)},
                     {"collision", name_of(e.collision)},
-                    {"precision", text(e.precision)},
+                    {"precision", name_of(e.precision)},
                     {"grid", e.grid},
                     {"threads", e.threads},
                     {"covered", e.covered},
@@ -327,7 +324,8 @@ int main(int argc, char** argv) {
   int threads = 2;
   bool names = false;
   std::vector<int> grids;
-  std::vector<std::string> lattices{"D2Q9"}, precisions{"double"};
+  std::vector<std::string> sets, lattices{"D2Q9"}, precisions{"double"};
+  for (const VelocitySet set : choices<VelocitySet>()) sets.push_back(name_of(set));
   CLI::App app{"Speed of every kernel, as ratios in one run"};
   app.add_option("--filter", filter,
                  "regular expression on the names; bandwidth is always measured")
@@ -336,19 +334,17 @@ int main(int argc, char** argv) {
   app.add_option("--json", json, "write the table to this file");
   app.add_option("--threads", threads, "largest number of threads");
   app.add_option("--grid", grids, "cells along a side (else 200 and 1600, in 3D 32 and 160)");
-  app.add_option("--lattice", lattices, "D2Q9, D3Q19, D3Q27")
-      ->check(CLI::IsMember(known_lattices()));
+  app.add_option("--lattice", lattices, "D2Q9, D3Q19, D3Q27")->check(CLI::IsMember(sets));
   app.add_option("--precision", precisions, "double, single")
       ->check(CLI::IsMember({"double", "single"}));
   if (const auto code = protocol::read_command_line(app, "lbm_benchmark", argc, argv)) return *code;
-  for (const std::string& lattice : lattices)
+  for (const std::string& set : lattices)
     for (const std::string& precision : precisions) {
-      const bool flat = lattice == D2Q9::name;
+      const auto velocities = from_name<VelocitySet>(set);
+      const bool flat = lattice(velocities).D == 2;
       const auto sizes = !grids.empty() ? grids : std::vector{flat ? 200 : 32, flat ? 1600 : 160};
       for (const int grid : sizes)
-        register_setting(
-            {lattice, precision == "double" ? Precision::Double : Precision::Single, grid},
-            threads);
+        register_setting({velocities, from_name<Precision>(precision), grid}, threads);
     }
   for (const int count : {49, 10000})
     for (const char* part : {"map", "velocity", "loads", "trace"})

@@ -28,6 +28,7 @@
 #include "tests/performance/array_table.h"
 #include "tests/reference/disc_area.h"
 #include "tests/support/array_references.h"
+#include "tests/support/scheme_fluid.h"
 
 namespace {
 
@@ -39,49 +40,48 @@ const double kDrag = test::kDiscDrag.at(kFraction);
 struct Row {
   std::string name;
   CollisionOperator collision;
-  std::string scheme, term;
+  test::Case solids;
   WeightRule weight = WeightRule::Viscous;
 };
 
 const std::vector<Row> kRows{
-    {"default, bodies at rest: TRT, resistance", CollisionOperator::Trt, "", "resistance"},
-    {"default, free bodies: TRT, layered resistance", CollisionOperator::Trt, "",
-     "layered_resistance"},
+    {"default, bodies at rest: TRT, resistance", CollisionOperator::Trt, SolidTerm::Resistance},
+    {"default, free bodies: TRT, layered resistance", CollisionOperator::Trt,
+     SolidTerm::LayeredResistance},
     {"default above Re_h 5: CM, layered Noble–Torczynski, B(ε,τ)", CollisionOperator::CentralMoment,
-     "", "layered_noble_torczynski"},
-    {"papers: BGK, Noble–Torczynski, B(ε,τ)", CollisionOperator::Bgk, "", "noble_torczynski"},
-    {"BGK, Noble–Torczynski, B = ε", CollisionOperator::Bgk, "", "noble_torczynski",
+     SolidTerm::LayeredNobleTorczynski},
+    {"papers: BGK, Noble–Torczynski, B(ε,τ)", CollisionOperator::Bgk, SolidTerm::NobleTorczynski},
+    {"BGK, Noble–Torczynski, B = ε", CollisionOperator::Bgk, SolidTerm::NobleTorczynski,
      WeightRule::Fraction},
-    {"TRT, Noble–Torczynski, B(ε,τ)", CollisionOperator::Trt, "", "noble_torczynski"},
-    {"TRT, Holdych, B(ε,τ)", CollisionOperator::Trt, "", "holdych"},
-    {"TRT, layered Holdych, B(ε,τ)", CollisionOperator::Trt, "", "layered_holdych"},
-    {"TRT, Holdych, B = ε", CollisionOperator::Trt, "", "holdych", WeightRule::Fraction},
-    {"BGK, superposition, B(ε,τ)", CollisionOperator::Bgk, "", "superposition"},
-    {"TRT, superposition, B = ε", CollisionOperator::Trt, "", "superposition",
+    {"TRT, Noble–Torczynski, B(ε,τ)", CollisionOperator::Trt, SolidTerm::NobleTorczynski},
+    {"TRT, Holdych, B(ε,τ)", CollisionOperator::Trt, SolidTerm::Holdych},
+    {"TRT, layered Holdych, B(ε,τ)", CollisionOperator::Trt, SolidTerm::LayeredHoldych},
+    {"TRT, Holdych, B = ε", CollisionOperator::Trt, SolidTerm::Holdych, WeightRule::Fraction},
+    {"BGK, superposition, B(ε,τ)", CollisionOperator::Bgk, SolidTerm::Superposition},
+    {"TRT, superposition, B = ε", CollisionOperator::Trt, SolidTerm::Superposition,
      WeightRule::Fraction},
-    {"BGK, bounce-back (staircase)", CollisionOperator::Bgk, "bounce_back", "none"},
-    {"TRT, bounce-back (staircase)", CollisionOperator::Trt, "bounce_back", "none"},
-    {"TRT, interpolated bounce-back", CollisionOperator::Trt, "interpolated_bounce_back", "none"},
-    {"BGK, implicit immersed boundary", CollisionOperator::Bgk, "implicit_immersed_boundary",
-     "none"},
-    {"TRT, implicit immersed boundary", CollisionOperator::Trt, "implicit_immersed_boundary",
-     "none"},
-    {"BGK, spring immersed boundary", CollisionOperator::Bgk, "spring_immersed_boundary", "none"},
+    {"BGK, bounce-back (staircase)", CollisionOperator::Bgk, SolidScheme::BounceBack},
+    {"TRT, bounce-back (staircase)", CollisionOperator::Trt, SolidScheme::BounceBack},
+    {"TRT, interpolated bounce-back", CollisionOperator::Trt, SolidScheme::InterpolatedBounceBack},
+    {"BGK, implicit immersed boundary", CollisionOperator::Bgk,
+     SolidScheme::ImplicitImmersedBoundary},
+    {"TRT, implicit immersed boundary", CollisionOperator::Trt,
+     SolidScheme::ImplicitImmersedBoundary},
+    {"BGK, spring immersed boundary", CollisionOperator::Bgk, SolidScheme::SpringImmersedBoundary},
 };
 
 Fluid make(const Row& row, const Domain& domain, double tau, const Vec3& force) {
   KernelChoice choice{
       .collision = row.collision,
       .force = force.norm() > 0.0,
-      .solid_term = row.term,
+      .solid_term = row.solids.term,
       .parameters = {.tau = tau,
-                     .magic = by_resistance(row.term) ? kResistanceMagic : 3.0 / 16.0,
+                     .magic = by_resistance(row.solids.term) ? kResistanceMagic : 3.0 / 16.0,
                      .force_x = force.x(),
                      .force_y = force.y()},
       .weight = row.weight};
   Fluid fluid(domain, choice);
-  if (!row.scheme.empty())
-    fluid.use(make_scheme(solid_scheme(row.scheme), domain, fluid.lattice()));
+  if (!row.solids.covers()) fluid.use(make_scheme(row.solids.scheme, domain, fluid.lattice()));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;
@@ -164,7 +164,7 @@ double step_seconds(const Row& row, bool solids) {
   const int n = 200;
   const Domain domain{n, n, Side::Periodic, Side::Periodic};
   Row bare = row;
-  if (!solids) bare.scheme.clear(), bare.term = "none";
+  if (!solids) bare.solids = SolidTerm::None;
   Fluid fluid = make(bare, domain, 0.6, {0.0, 0.0});
   std::vector<Body> discs;
   for (int i = 0; i < 49; ++i)

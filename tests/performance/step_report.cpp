@@ -174,7 +174,8 @@ class Cases {
     scene.numerics.magic = plan.kernel.parameters.magic;  // the choice for solids, without any
     scene.coupling.reset();
     scene.particles.reset();
-    scene.numerics.scheme = scene.numerics.solid_term = "auto";
+    scene.numerics.scheme.reset();
+    scene.numerics.solid_term.reset();
     Fluid without = make_fluid(scene, make_plan(scene));
     stir(with);
     stir(without);
@@ -205,7 +206,7 @@ class Cases {
     const Scene scene = scene_of(numerics_, 48, 44, 0.7);
     const Plan plan = make_plan(scene);
     Fluid fluid = make_fluid(scene, plan);
-    test::MomentumBalance balance(fluid, name_of(plan.scheme));
+    test::MomentumBalance balance(fluid, plan.scheme);
     double largest = 0.0;
     for (int step = 0; step < steps; ++step) {
       keep_largest(largest, balance.step(discs));
@@ -239,7 +240,7 @@ class Cases {
     const Plan plan = make_plan(scene);
     Fluid fluid = make_fluid(scene, plan);
     stir(fluid);
-    test::MomentumBalance balance(fluid, name_of(plan.scheme));
+    test::MomentumBalance balance(fluid, plan.scheme);
     auto discs = two_discs();
     double largest = 0.0;
     for (int step = 0; step < to; ++step) {
@@ -289,15 +290,26 @@ class Cases {
   NumericsScene numerics_;
 };
 
+/// An option that takes what a scene takes. @param to  nothing where that is "auto"
+template <Choice E>
+void add_choice(CLI::App& app, const char* option, std::optional<E>& to) {
+  std::vector<std::string> names{"auto"};
+  for (const E value : choices<E>()) names.push_back(name_of(value));
+  const auto take = [&to](const std::string& name) {
+    if (name != "auto") to = from_name<E>(name);
+  };
+  app.add_option_function<std::string>(option, take, "as in a scene")->check(CLI::IsMember(names));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   NumericsScene numerics;
   CLI::App app{"Hard cases that show in single steps of the fluid, with one choice of numerics"};
-  app.add_option("--collision", numerics.collision, "as in a scene");
-  app.add_option("--scheme", numerics.scheme, "as in a scene");
-  app.add_option("--solid-term", numerics.solid_term, "as in a scene");
-  app.add_option("--weight", numerics.weight, "as in a scene");
+  add_choice(app, "--collision", numerics.collision);
+  add_choice(app, "--scheme", numerics.scheme);
+  add_choice(app, "--solid-term", numerics.solid_term);
+  add_choice(app, "--weight", numerics.weight);
   if (const auto code = protocol::read_command_line(app, "step_report", argc, argv)) return *code;
   try {
     const Cases cases(numerics);

@@ -22,7 +22,7 @@ void add_lid(Fluid& fluid, double u, const InTime& in_time = {}) {
 }
 
 TEST(Couette, IsLinearToRoundOffWithEveryOperator) {
-  for (const CollisionOperator collision : known_collisions()) {
+  for (const CollisionOperator collision : choices<CollisionOperator>()) {
     const int nx = 5, ny = 16;
     Fluid fluid({nx, ny, Side::Periodic, Side::Wall},
                 {.collision = collision, .parameters = {.tau = 1.0}});
@@ -49,7 +49,7 @@ TEST(Poiseuille, IsExactWithTrtAndTheMagicRate) {
 
 /// Every operator and the body force: the momentum of a periodic box grows by F a step.
 TEST(BodyForce, GivesItsMomentumToEveryOperator) {
-  for (const CollisionOperator collision : known_collisions())
+  for (const CollisionOperator collision : choices<CollisionOperator>())
     for (const double smagorinsky : {0.0, 0.1}) {
       Fluid fluid({9, 7, Side::Periodic, Side::Periodic},
                   {.collision = collision,
@@ -69,7 +69,7 @@ TEST(BodyForce, GivesItsMomentumToEveryOperator) {
 TEST(BodyForce, ComesUpInItsRamp) {
   const InTime ramp{40.0, 0.0};
   const double force = 1e-5;
-  for (const CollisionOperator collision : known_collisions()) {
+  for (const CollisionOperator collision : choices<CollisionOperator>()) {
     const auto fluid = [&] {
       Fluid f(
           {9, 7, Side::Periodic, Side::Periodic},
@@ -123,13 +123,13 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
   // Couette: |S| = shear rate, nu_t = (S_c)² |S|, the same everywhere; the wall's force tells it
   const int nx = 5, ny = 16;
   const double tau = 0.502, s_c = 0.3, u = 0.02, rate = u / ny;
-  const auto check = [&](CollisionOperator collision, const std::string& lattice) {
+  const auto check = [&](CollisionOperator collision, VelocitySet lattice) {
     // Λ = 3/16 would make TRT's odd rate 1/94 here: its odd modes then carry tau^- u ∇u into Q_xx,
     // which the model takes for strain (0.9 % in the stress at this speed, 5 % at u = 0.1).
     KernelChoice les{.collision = collision,
                      .parameters = {.tau = tau, .magic = 1e-3, .smagorinsky = s_c}};
     les.lattice = lattice;
-    const int nz = lattice == "D2Q9" ? 1 : 3;
+    const int nz = lattice == VelocitySet::D2Q9 ? 1 : 3;
     Fluid fluid({nx, ny, Side::Periodic, Side::Wall, nz, Side::Periodic}, les);
     for (int z = 0; z < nz; ++z)
       for (int y = 0; y < ny; ++y)
@@ -147,8 +147,9 @@ TEST(Smagorinsky, GivesItsViscosityInPureShear) {
     const double nu = (tau - 0.5) / 3.0 + s_c * s_c * rate, total = 3.0 * nu + 0.5;
     EXPECT_NEAR(-(1.0 - 0.5 / total) * stress / (nu * rate), 1.0, 1e-3) << collision << lattice;
   };
-  for (const CollisionOperator collision : known_collisions())
-    for (const char* lattice : {"D2Q9", "D3Q19", "D3Q27"}) check(collision, lattice);
+  for (const CollisionOperator collision : choices<CollisionOperator>())
+    for (const VelocitySet lattice : {VelocitySet::D2Q9, VelocitySet::D3Q19, VelocitySet::D3Q27})
+      check(collision, lattice);
 }
 
 /// Part of a sound pulse that comes back from the right side.
@@ -200,7 +201,7 @@ TEST(Outflow, LetsFluidInNoFasterThanBernoulli) {
 /// that takes their place comes in there, and moves about as fast as they do.
 TEST(Outflow, GrainsPassThrough) {
   Fluid fluid({60, 60, Side::Wall, Side::Wall}, {.collision = CollisionOperator::CentralMoment,
-                                                 .solid_term = "layered_noble_torczynski",
+                                                 .solid_term = SolidTerm::LayeredNobleTorczynski,
                                                  .parameters = {.tau = 0.51}});
   test::add_outflow(fluid, Opening::whole(fluid.domain(), SideName::Right), 0.0, 0.01);
   double largest = 0.0;

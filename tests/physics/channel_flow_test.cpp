@@ -55,11 +55,11 @@ class Channel {
         fluid_({nx_, 2 * half + 2, Side::Periodic, Side::Periodic, nz_, Side::Periodic},
                {.collision = CollisionOperator::CentralMoment,
                 .force = true,
-                .solid_term = "layered_noble_torczynski",
+                .solid_term = SolidTerm::LayeredNobleTorczynski,
                 .parameters = {.tau = 0.5 + 3.0 * nu_,
                                .smagorinsky = smagorinsky,
                                .force_x = u_tau_ * u_tau_ / half},
-                .lattice = "D3Q19",
+                .lattice = VelocitySet::D3Q19,
                 .eddies = model}) {
     fluid_.add_wall({0, 0, 0}, {nx_, 1, nz_});
     fluid_.add_wall({0, 2 * half + 1, 0}, {nx_, 2 * half + 2, nz_});

@@ -20,9 +20,9 @@ using std::numbers::pi;
 using test::clump_coupling;
 using test::FreeClump;
 
-constexpr const char* kTerm = "layered_resistance";
+constexpr SolidTerm kTerm = SolidTerm::LayeredResistance;
 
-KernelChoice trt(const std::string& lattice, double tau, bool force = false) {
+KernelChoice trt(VelocitySet lattice, double tau, bool force = false) {
   KernelChoice choice{.force = force, .solid_term = kTerm};
   choice.lattice = lattice;
   choice.parameters.tau = tau;
@@ -53,7 +53,7 @@ TEST(Clump, OfOneSphereIsTheSphereToTheBit) {
     carrier.shape.volume = volume;
     std::vector<protocol::Load> loads[2];
     for (const bool clump : {false, true}) {
-      Fluid fluid(domain, trt(dimension == 2 ? "D2Q9" : "D3Q19", 0.8));
+      Fluid fluid(domain, trt(dimension == 2 ? VelocitySet::D2Q9 : VelocitySet::D3Q19, 0.8));
       Particles wire = clump_coupling(fluid, kTerm, 1.0, {0.0, -1e-5, 0.0});
       std::vector<protocol::Particle> all{clump ? carrier : grain};
       if (clump) all.push_back(sphere);
@@ -84,7 +84,7 @@ TEST(Clump, ThatIsNeutralStaysWhereItIs) {
   // Weight and buoyancy are of one volume, and a fluid at rest pushes nothing: nothing but
   // round-off moves it. With buoyancy once a sphere it would rise at g/5.
   const Vec3 gravity(0.0, -1e-4, 2e-5);
-  Fluid fluid(cube(24), trt("D3Q19", 0.8));
+  Fluid fluid(cube(24), trt(VelocitySet::D3Q19, 0.8));
   Particles wire = clump_coupling(fluid, kTerm, 0.0, gravity);
   FreeClump clump(odd_pair(), 1.0, {11.7, 12.2, 12.4}, 3);
   const Vec3 start = clump.place();
@@ -105,7 +105,7 @@ Vec3 momentum(const Fluid& fluid) {
 
 TEST(Clump, TakesTheMomentumThatTheFluidLoses) {
   // What its two spheres take from cells that both cover is the force on it, once: to round-off.
-  Fluid fluid(cube(20), trt("D3Q19", 0.7));
+  Fluid fluid(cube(20), trt(VelocitySet::D3Q19, 0.7));
   Particles wire = clump_coupling(fluid, kTerm);
   FreeClump clump(odd_pair(), 1.5, {9.3, 10.1, 9.8}, 3);
   clump.velocity = {0.01, -0.02, 0.005};
@@ -125,7 +125,7 @@ TEST(Clump, TakesTheMomentumThatTheFluidLoses) {
 TEST(Clump, CoversACellOnce) {
   // A sphere in two copies at one place, as one clump, acts as the sphere does.
   for (const int copies : {1, 2}) {
-    Fluid fluid(cube(20), trt("D3Q19", 0.8));
+    Fluid fluid(cube(20), trt(VelocitySet::D3Q19, 0.8));
     std::vector<Body> bodies(static_cast<std::size_t>(copies));
     for (Body& body : bodies) {
       body.id = &body - bodies.data();
@@ -154,7 +154,7 @@ TEST(Clump, CoversACellOnce) {
 Vec3 drag_in_unbounded_fluid(const std::vector<FreeClump::Part>& parts, double a, int n) {
   const double tau = 1.1, nu = (tau - 0.5) / 3.0, speed = 1e-4;
   const double volume = static_cast<double>(n) * n * n;
-  Fluid fluid(cube(n), trt("D3Q19", tau, true));
+  Fluid fluid(cube(n), trt(VelocitySet::D3Q19, tau, true));
   for (int z = 0; z < n; ++z)
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) fluid.set_equilibrium({x, y, z}, 1.0, {speed, speed, speed});
@@ -211,7 +211,7 @@ TEST(Clump, Slow_OfFourSpheresInATetrahedronHasItsDrag) {
 double turning_drag(const std::vector<FreeClump::Part>& parts, double a, const Vec3& axis) {
   constexpr int n = 44;
   const double tau = 1.1, nu = (tau - 0.5) / 3.0, omega = 1e-4;
-  Fluid fluid(cube(n), trt("D3Q19", tau));
+  Fluid fluid(cube(n), trt(VelocitySet::D3Q19, tau));
   Particles wire = clump_coupling(fluid, kTerm);
   FreeClump clump(parts, 1.0, {0.5 * n + 0.13, 0.5 * n - 0.21, 0.5 * n + 0.37}, 3);
   clump.set_spin(omega * axis);
@@ -250,7 +250,8 @@ TEST(Clump, Slow_OfTwoSpheresTumblesAsAnEllipsoidOfAxisRatio198) {
   // resolution, of walls three and a half lengths apart, and of a Reynolds number γ̇ r²/ν of 0.07.
   constexpr int nx = 48, ny = 56, nz = 40;
   const double tau = 1.5, shear = 1.5e-3, r = 4.0;
-  Fluid fluid({nx, ny, Side::Periodic, Side::Wall, nz, Side::Periodic}, trt("D3Q19", tau));
+  Fluid fluid({nx, ny, Side::Periodic, Side::Wall, nz, Side::Periodic},
+              trt(VelocitySet::D3Q19, tau));
   for (const SideName side : {SideName::Bottom, SideName::Top}) {
     const Opening all = Opening::whole(fluid.domain(), side);
     const double speed = 0.5 * ny * shear * (side == SideName::Top ? 1.0 : -1.0);
@@ -288,7 +289,7 @@ TEST(Clump, Slow_OfTwoSpheresTumblesAsAnEllipsoidOfAxisRatio198) {
 double falling_speed(const std::vector<FreeClump::Part>& parts, double density, int n, int steps,
                      double virtual_mass = 0.0) {
   const double tau = 1.1, weight = 2e-4;
-  Fluid fluid(cube(n), trt("D3Q19", tau, true));
+  Fluid fluid(cube(n), trt(VelocitySet::D3Q19, tau, true));
   FreeClump clump(parts, density, {0.5 * n + 0.3, 0.5 * n + 0.1, 0.5 * n - 0.2}, 3);
   const double down = weight / (clump.mass() - clump.volume());  // gravity for that weight
   const Vec3 gravity(0.0, -down, 0.0);

@@ -70,7 +70,8 @@ TEST(FlowControl, FindsTheForceOfAGel) {
 TEST(FlowControl, FindsTheForceOfAnArray) {
   constexpr int n = 20;
   constexpr double tau = 0.8, nu = (tau - 0.5) / 3.0, speed = 1e-3, fraction = 0.2;
-  KernelChoice choice{.force = true, .solid_term = "resistance", .parameters = {.tau = tau}};
+  KernelChoice choice{
+      .force = true, .solid_term = SolidTerm::Resistance, .parameters = {.tau = tau}};
   choice.parameters.magic = kResistanceMagic;
   Fluid fluid({n, n, Side::Periodic, Side::Periodic}, choice);
   fluid.place(std::vector<Body>{
@@ -135,9 +136,9 @@ TEST(PressureControl, ComesToTheFlowAgainstAnyResistance) {
   constexpr double speed = 1e-3;
   for (const double radius : {0.0, 7.3}) {
     const int length = 64;
-    Fluid fluid(
-        {length, kHeight, Side::Wall, Side::Wall},
-        {.solid_term = "resistance", .parameters = {.tau = 0.8, .magic = kResistanceMagic}});
+    Fluid fluid({length, kHeight, Side::Wall, Side::Wall},
+                {.solid_term = SolidTerm::Resistance,
+                 .parameters = {.tau = 0.8, .magic = kResistanceMagic}});
     for (const SideName side : {SideName::Left, SideName::Right}) {
       const Opening whole = Opening::whole(fluid.domain(), side);
       fluid.add(std::make_unique<PressurePatch>(fluid.links(whole), side, 0.0, InTime{}));

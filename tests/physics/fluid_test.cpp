@@ -101,7 +101,7 @@ TEST(HalfWayWalls, ShearFlowDecaysAsItShouldInBothDirections) {
 }
 
 class ClosedBoxOf : public testing::TestWithParam<CollisionOperator> {};
-INSTANTIATE_TEST_SUITE_P(Operators, ClosedBoxOf, testing::ValuesIn(known_collisions()),
+INSTANTIATE_TEST_SUITE_P(Operators, ClosedBoxOf, testing::ValuesIn(choices<CollisionOperator>()),
                          [](const auto& info) { return name_of(info.param); });
 
 TEST_P(ClosedBoxOf, KeepsItsMassToRoundOff) {
@@ -136,7 +136,7 @@ TEST(Extremes, FindsThePlaceOfAValueThatIsNotFinite) {
 TEST(Memory, IsTakenForSolidsOnlyWhereTheyCanBe) {
   const Domain box{64, 48, Side::Wall, Side::Wall};
   KernelChoice with_solids = choice(CollisionOperator::Trt, 0.9);
-  with_solids.solid_term = "holdych";
+  with_solids.solid_term = SolidTerm::Holdych;
   const Fluid pure(box, choice(CollisionOperator::Trt, 0.9));
   Fluid covered(box, with_solids);
   const double cells = 64.0 * 48.0 * 9.0 * sizeof(double);

@@ -33,9 +33,9 @@ Released release(double ratio, double viscosity, double seconds, double early,
   scene.fluid = {.density = 1000.0, .viscosity = viscosity, .gravity = {0.0, -9.8}};
   scene.coupling.emplace().virtual_mass = virtual_mass;
   scene.particles.emplace();
-  Fluid fluid = make({"", "layered_resistance"}, {8 * cells, 16 * cells, Side::Wall, Side::Wall},
+  Fluid fluid = make(SolidTerm::LayeredResistance, {8 * cells, 16 * cells, Side::Wall, Side::Wall},
                      CollisionOperator::Trt, 0.5 + 3.0 * viscosity * dt / (dx * dx));
-  Particles particles(units, scene, fluid.domain(), "layered_resistance");
+  Particles particles(units, scene, fluid.domain(), SolidTerm::LayeredResistance);
   const double mass = ratio * 1000.0 * std::numbers::pi * radius * radius;
   protocol::Particle p{{1, {0.01, 0.02, 0.0}, {}, {}},
                        {1, radius, mass, 0.5 * mass * radius * radius, 1}};
@@ -121,8 +121,9 @@ double free_drag_error(int cells, double ratio) {
   const double tau = 1.0, nu = (tau - 0.5) / 3.0, fraction = 0.2, drag = test::kDiscDrag.at(0.2);
   const double area = 1.0 * cells * cells, radius = std::sqrt(fraction * area / std::numbers::pi);
   const double u = 0.1 * nu / (2.0 * radius), g = drag * nu * u / area, weight = g * area;
-  Fluid fluid = test::slow_fluid(
-      "layered_resistance", {cells, cells, Side::Periodic, Side::Periodic}, tau, {0.0, g, 0.0});
+  Fluid fluid =
+      test::slow_fluid(SolidTerm::LayeredResistance, {cells, cells, Side::Periodic, Side::Periodic},
+                       tau, {0.0, g, 0.0});
   Scene scene;
   scene.fluid = {.density = 1.0,
                  .viscosity = nu,
@@ -164,7 +165,7 @@ TEST(PeriodicCrossing, OfFacesAndCornersChangesNoTrajectory) {
   const Domain domain{48, 40, Side::Periodic, Side::Periodic};
   const Vec3 inside(20.0 + 77.0 / 1024, 19.0 + 301.0 / 1024), gravity(2e-5, -1e-5);
   const auto from = [&](const Vec3& start) {
-    return free_run(domain, {"", "layered_resistance"}, CollisionOperator::Trt, 0.7, 2.5, 5.25,
+    return free_run(domain, SolidTerm::LayeredResistance, CollisionOperator::Trt, 0.7, 2.5, 5.25,
                     start, gravity, 1000);
   };
   const FreeRun reference = from(inside);
@@ -182,7 +183,7 @@ TEST(FastSettling, HasLittleForceNoiseAtReynolds300) {
   const Domain domain{96, 500, Side::Wall, Side::Wall};
   const double gravity = 4.4e-4, radius = 6.0, ratio = 1.25;
   const FreeRun run =
-      free_run(domain, {"", "layered_noble_torczynski"}, CollisionOperator::CentralMoment, 0.5048,
+      free_run(domain, SolidTerm::LayeredNobleTorczynski, CollisionOperator::CentralMoment, 0.5048,
                ratio, radius, {47.7, 460.3}, {0.0, -gravity}, 8000);
   const double speed = -run.velocity[7999].y(), viscosity = 0.0048 / 3.0;
   EXPECT_NEAR(speed * 2.0 * radius / viscosity, 310.0, 60.0);
@@ -226,7 +227,7 @@ double viscosity_gain(const Case& c, double tau, double diameter, double fractio
 TEST(DiluteSuspension, HasTheViscosityOfFreeDiscs) {
   // 1 + 2φ [Brady 1984] as φ → 0; the gain is linear in φ where walls and images are far.
   // 10 %: the target at ten cells.
-  const Case c{"", "layered_resistance"};
+  const Case c{SolidTerm::LayeredResistance};
   for (const double tau : {0.6, 1.0, 1.5}) {
     const double one = viscosity_gain(c, tau, 10.0, 0.01);
     const double two = viscosity_gain(c, tau, 10.0, 0.02);
@@ -241,7 +242,7 @@ TEST(DiluteSuspension, HasTheViscosityOfFreeDiscs) {
 TEST(Averaging, OverSeveralFluidStepsKeepsTheTerminalVelocity) {
   const Domain domain{64, 300, Side::Wall, Side::Wall};
   const auto speed = [&](int fluid_steps) {
-    return free_run(domain, {"", "layered_resistance"}, CollisionOperator::Trt, 0.7, 1.5, 5.0,
+    return free_run(domain, SolidTerm::LayeredResistance, CollisionOperator::Trt, 0.7, 1.5, 5.0,
                     {32.0, 260.0}, {0.0, -4e-5}, 6000, fluid_steps)
         .velocity.back()
         .y();
@@ -262,8 +263,9 @@ double energy_left(int dimension, int a_side, double radius, int box, double tau
   scene.fluid = {.density = 1.0, .viscosity = (tau - 0.5) / 3.0};
   scene.coupling.emplace();
   scene.particles.emplace().density = {ratio, ratio};
-  Fluid fluid = test::slow_fluid("layered_resistance", domain, tau, Vec3());
-  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene, domain, "layered_resistance");
+  Fluid fluid = test::slow_fluid(SolidTerm::LayeredResistance, domain, tau, Vec3());
+  Particles particles({1.0, 1.0, 1.0, 1.0, {0.0, 0.0}}, scene, domain,
+                      SolidTerm::LayeredResistance);
   const double pi = std::numbers::pi;
   const double mass = ratio * pi * radius * radius * (flat ? 1.0 : 4.0 / 3.0 * radius);
   const double inertia = (flat ? 0.5 : 0.4) * mass * radius * radius;

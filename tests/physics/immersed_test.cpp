@@ -13,8 +13,9 @@ namespace {
 
 using namespace lbm;
 
-const std::vector<std::string> kTerms{"resistance", "layered_resistance", "noble_torczynski",
-                                      "holdych", "layered_holdych"};
+const std::vector<SolidTerm> kTerms{SolidTerm::Resistance, SolidTerm::LayeredResistance,
+                                    SolidTerm::NobleTorczynski, SolidTerm::Holdych,
+                                    SolidTerm::LayeredHoldych};
 
 Vec3 momentum(const Fluid& fluid) {
   const Domain& d = fluid.domain();
@@ -44,7 +45,7 @@ Vec3 wall_impulse(const Fluid& fluid) {
 }
 
 TEST(Momentum, FluidPlusDiscsMinusWallsIsConstant) {
-  for (const std::string& term : kTerms)
+  for (const SolidTerm term : kTerms)
     for (const Side side : {Side::Wall, Side::Periodic}) {
       const Domain domain{50, 44, side, Side::Wall};
       Fluid fluid(domain, {.solid_term = term, .parameters = {.tau = 0.7}});
@@ -69,7 +70,7 @@ TEST(Momentum, FluidPlusDiscsMinusWallsIsConstant) {
 TEST(Symmetry, AMirroredSceneGivesMirroredLoads) {
   const Domain domain{48, 40, Side::Wall, Side::Wall};
   const auto run = [&](double sign) {
-    Fluid fluid(domain, {.solid_term = "layered_resistance", .parameters = {.tau = 0.8}});
+    Fluid fluid(domain, {.solid_term = SolidTerm::LayeredResistance, .parameters = {.tau = 0.8}});
     Body disc{1, {24.0 + sign * 5.25, 18.5}, 5.5, {sign * 0.03, -0.02}, sign * 0.004};
     BodyLoad load;
     for (int s = 0; s < 40; ++s) {
@@ -114,12 +115,12 @@ FreeDisc settle(double density_ratio, int steps, bool inner_inertia) {
   coupling.inner_inertia = inner_inertia;
   const double tau = 0.5 + 3.0 * fluid_scene.viscosity * units.dt / (dx * dx);
   Fluid fluid({80, 160, Side::Wall, Side::Wall},
-              {.solid_term = "layered_resistance", .parameters = {.tau = tau}});
+              {.solid_term = SolidTerm::LayeredResistance, .parameters = {.tau = tau}});
   Scene scene;
   scene.fluid = fluid_scene;
   scene.coupling = coupling;
   scene.particles.emplace();
-  Particles particles(units, scene, fluid.domain(), "layered_resistance");
+  Particles particles(units, scene, fluid.domain(), SolidTerm::LayeredResistance);
   const double mass = density_ratio * 1000.0 * std::numbers::pi * radius * radius;
   FreeDisc disc{
       {{1, {0.01, 0.03, 0.0}, {}, {}}, {1, radius, mass, 0.5 * mass * radius * radius, 1}},

@@ -20,13 +20,13 @@ using test::flux;
 
 KernelChoice choice(int dimension, double tau, const Vec3& force = Vec3()) {
   KernelChoice c{.force = force.norm() > 0.0,
-                 .solid_term = "layered_resistance",
+                 .solid_term = SolidTerm::LayeredResistance,
                  .parameters = {.tau = tau,
                                 .magic = kResistanceMagic,
                                 .force_x = force.x(),
                                 .force_y = force.y(),
                                 .force_z = force.z()}};
-  c.lattice = dimension == 2 ? "D2Q9" : "D3Q19";
+  c.lattice = dimension == 2 ? VelocitySet::D2Q9 : VelocitySet::D3Q19;
   return c;
 }
 

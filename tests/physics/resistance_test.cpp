@@ -18,12 +18,12 @@ using std::numbers::pi;
 
 /// Place of a plane parallel to an axis as shear flow sees it, minus where it is, in cells: whole
 /// cells below, one with solid fraction eps, fluid up to a moving wall.
-double parallel_plane(const std::string& lattice, double eps, double tau) {
+double parallel_plane(VelocitySet lattice, double eps, double tau) {
   constexpr int n = 12, whole = 2;
-  const bool flat = lattice == "D2Q9";
+  const bool flat = lattice == VelocitySet::D2Q9;
   const Domain domain = flat ? Domain{1, n, Side::Periodic, Side::Wall}
                              : Domain{1, n, Side::Periodic, Side::Wall, 1, Side::Periodic};
-  KernelChoice choice{.solid_term = "resistance",
+  KernelChoice choice{.solid_term = SolidTerm::Resistance,
                       .parameters = {.tau = tau, .magic = kResistanceMagic}};
   choice.lattice = lattice;
   test::NaiveLattice fluid(domain, choice);
@@ -59,8 +59,9 @@ TEST(Plane, ParallelToAnAxisLiesWhereItIsAtEveryOffsetAndRelaxationTime) {
   // Exact by derivation; 0.002 of a cell leaves room for runs that end before they are steady.
   for (const double tau : {0.505, 0.6, 1.0, 2.0})
     for (const double eps : {0.02, 0.3, 0.5, 0.8, 0.98})
-      EXPECT_NEAR(parallel_plane("D2Q9", eps, tau), 0.0, 0.002) << "ε " << eps << " τ " << tau;
-  for (const char* lattice : {"D3Q19", "D3Q27"})
+      EXPECT_NEAR(parallel_plane(VelocitySet::D2Q9, eps, tau), 0.0, 0.002)
+          << "ε " << eps << " τ " << tau;
+  for (const VelocitySet lattice : {VelocitySet::D3Q19, VelocitySet::D3Q27})
     for (const double eps : {0.1, 0.6})
       EXPECT_NEAR(parallel_plane(lattice, eps, 1.0), 0.0, 0.002) << lattice << " ε " << eps;
 }
@@ -93,13 +94,13 @@ double between_plates(const Vec3& direction, int n, double thick, double offset)
   const double period = n / direction.norm(), gap = period - thick;
   const Domain domain{n, n, Side::Periodic, Side::Periodic, flat ? 1 : n, Side::Periodic};
   KernelChoice choice{.force = true,
-                      .solid_term = "resistance",
+                      .solid_term = SolidTerm::Resistance,
                       .parameters = {.tau = tau,
                                      .magic = kResistanceMagic,
                                      .force_x = g * along.x(),
                                      .force_y = g * along.y(),
                                      .force_z = g * along.z()}};
-  choice.lattice = flat ? "D2Q9" : "D3Q19";
+  choice.lattice = flat ? VelocitySet::D2Q9 : VelocitySet::D3Q19;
   Fluid fluid(domain, choice);
   fluid.add_wall({0, 0, 0}, {n, n, flat ? 1 : n});
   // Distance into the gap, 0 … period; the plate lies beyond `gap`.
@@ -167,7 +168,8 @@ TEST(Plane, OfAnyDirectionIsThickerByTheShiftThatBodiesAreMappedWith) {
       EXPECT_LT(std::abs(one), 0.045) << d.transpose();  // largest: 0.030 and 0.037
       mean += one / static_cast<double>(directions.size());
     }
-    EXPECT_NEAR(mean + radius_shift("resistance", dimension).plane, 0.0, 0.003) << dimension;
+    EXPECT_NEAR(mean + radius_shift(SolidTerm::Resistance, dimension).plane, 0.0, 0.003)
+        << dimension;
   }
 }
 
@@ -192,7 +194,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(DragOf, BodiesAtRestMeetsItsGate) {
   const ArrayGate& g = GetParam();
-  const test::Errors e = test::array_errors("resistance", g.dimension, g.fraction, g.n, 1.0);
+  const test::Errors e =
+      test::array_errors(SolidTerm::Resistance, g.dimension, g.fraction, g.n, 1.0);
   RecordProperty("error", std::to_string(e.mean));
   EXPECT_LE(std::abs(e.mean), g.error) << "spread " << e.spread;
   EXPECT_LE(e.spread, g.spread) << "error " << e.mean;
@@ -201,7 +204,7 @@ TEST_P(DragOf, BodiesAtRestMeetsItsGate) {
 TEST(ArrayDragAtRest, DoesNotDependOnTheRelaxationTime) {
   // Every coefficient is Λ⁺ times a function of ε and Λ; 0.1 % is what runs that end early differ.
   const Vec3 offset(0.23, 0.41, 0.0);
-  for (const char* term : {"resistance", "layered_resistance"}) {
+  for (const SolidTerm term : {SolidTerm::Resistance, SolidTerm::LayeredResistance}) {
     const double one = test::array_error(term, 2, 0.2, 20, 1.0, offset);
     for (const double tau : {0.6, 2.0})
       EXPECT_NEAR(test::array_error(term, 2, 0.2, 20, tau, offset), one, 0.1) << term << ' ' << tau;
@@ -210,20 +213,21 @@ TEST(ArrayDragAtRest, DoesNotDependOnTheRelaxationTime) {
 
 TEST(ArrayDragAtRest, DoesNotDependOnASmallRelaxationTimeEither) {
   const Vec3 offset(0.23, 0.41, 0.0);
-  EXPECT_NEAR(test::array_error("resistance", 2, 0.2, 12, 0.505, offset),
-              test::array_error("resistance", 2, 0.2, 12, 1.0, offset), 0.1);
+  EXPECT_NEAR(test::array_error(SolidTerm::Resistance, 2, 0.2, 12, 0.505, offset),
+              test::array_error(SolidTerm::Resistance, 2, 0.2, 12, 1.0, offset), 0.1);
 }
 
 TEST(Torque, OfARingOfADiscAndOfASphere) {
   for (const Vec3& offset : {Vec3(0.0, 0.0, 0.0), Vec3(0.5, 0.5, 0.0), Vec3(0.13, 0.37, 0.0)}) {
-    EXPECT_NEAR(test::ring_torque_error("layered_resistance", 8.0, 1.0, offset), 0.0, 1.0);
+    EXPECT_NEAR(test::ring_torque_error(SolidTerm::LayeredResistance, 8.0, 1.0, offset), 0.0, 1.0);
     // eight cells a diameter were to be within 1 %: 0.1, 1.1 and 1.1 %
-    EXPECT_NEAR(test::ring_torque_error("layered_resistance", 4.0, 1.0, offset), 0.0, 1.3);
+    EXPECT_NEAR(test::ring_torque_error(SolidTerm::LayeredResistance, 4.0, 1.0, offset), 0.0, 1.3);
   }
   // Drag asks for a larger radius than torque does, more so in three dimensions.
-  EXPECT_NEAR(test::sphere_torque_error("layered_resistance", 4.0, 1.0, {0.0, 0.0, 1.0}), 0.0, 3.0);
-  EXPECT_NEAR(test::sphere_torque_error("layered_resistance", 4.0, 1.0, {0.6, -0.48, 0.64}), 0.0,
-              3.0);
+  EXPECT_NEAR(test::sphere_torque_error(SolidTerm::LayeredResistance, 4.0, 1.0, {0.0, 0.0, 1.0}),
+              0.0, 3.0);
+  EXPECT_NEAR(test::sphere_torque_error(SolidTerm::LayeredResistance, 4.0, 1.0, {0.6, -0.48, 0.64}),
+              0.0, 3.0);
 }
 
 }  // namespace

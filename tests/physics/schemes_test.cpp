@@ -14,17 +14,17 @@ namespace {
 using namespace lbm;
 using test::Case, test::make;
 
-const std::vector<Case> kAll{{"", "resistance"},
-                             {"", "layered_resistance"},
-                             {"", "layered_holdych"},
-                             {"", "layered_noble_torczynski"},
-                             {"", "noble_torczynski"},
-                             {"", "holdych"},
-                             {"", "superposition"},
-                             {"bounce_back", "none"},
-                             {"interpolated_bounce_back", "none"},
-                             {"implicit_immersed_boundary", "none"},
-                             {"spring_immersed_boundary", "none"}};
+const std::vector<Case> kAll{SolidTerm::Resistance,
+                             SolidTerm::LayeredResistance,
+                             SolidTerm::LayeredHoldych,
+                             SolidTerm::LayeredNobleTorczynski,
+                             SolidTerm::NobleTorczynski,
+                             SolidTerm::Holdych,
+                             SolidTerm::Superposition,
+                             SolidScheme::BounceBack,
+                             SolidScheme::InterpolatedBounceBack,
+                             SolidScheme::ImplicitImmersedBoundary,
+                             SolidScheme::SpringImmersedBoundary};
 
 /// Error of the drag on a square array, c = 0.2, n cells a period: see the case cylinder_array.
 double array_error(const Case& c, int n, double tau, const Vec3& place = {0.23, 0.41, 0.0}) {
@@ -59,7 +59,7 @@ double mean_array_error(const Case& c, int n, double tau) {
 
 // (The defaults are in resistance_test, bodies at rest, and free_bodies_test, FreeDisc.)
 TEST(ArrayDrag, HoldychMeetsItsTarget) {
-  const Case c{"", "holdych"};
+  const Case c{SolidTerm::Holdych};
   for (const double tau : {0.6, 1.0, 1.5}) {
     EXPECT_LT(std::abs(array_error(c, 20, tau)), 0.03) << tau;   // D/h = 10
     EXPECT_LT(std::abs(array_error(c, 40, tau)), 0.015) << tau;  // D/h = 20
@@ -68,15 +68,15 @@ TEST(ArrayDrag, HoldychMeetsItsTarget) {
 
 TEST(ArrayDrag, LayeredHoldychMeetsItsTarget) {
   // Measured: -1.2 % and -3.1 % at τ 0.6 and 1 (mean of three places, spread 1.5 %).
-  EXPECT_LT(std::abs(array_error({"", "layered_holdych"}, 20, 0.6)), 0.03);
-  EXPECT_LT(std::abs(array_error({"", "layered_holdych"}, 20, 1.0)), 0.045);
+  EXPECT_LT(std::abs(array_error(SolidTerm::LayeredHoldych, 20, 0.6)), 0.03);
+  EXPECT_LT(std::abs(array_error(SolidTerm::LayeredHoldych, 20, 1.0)), 0.045);
 }
 
 TEST(ArrayDrag, OfTheOtherSchemesIsWhatTheReportSays) {
   // Means over the places within a cell, over which half-way bounce-back spreads by 9 %.
-  EXPECT_NEAR(mean_array_error({"bounce_back", "none"}, 20, 0.8), 0.015, 0.005);
-  EXPECT_NEAR(mean_array_error({"interpolated_bounce_back", "none"}, 20, 0.8), -0.013, 0.005);
-  EXPECT_NEAR(mean_array_error({"implicit_immersed_boundary", "none"}, 20, 0.8), 0.423, 0.005);
+  EXPECT_NEAR(mean_array_error(SolidScheme::BounceBack, 20, 0.8), 0.015, 0.005);
+  EXPECT_NEAR(mean_array_error(SolidScheme::InterpolatedBounceBack, 20, 0.8), -0.013, 0.005);
+  EXPECT_NEAR(mean_array_error(SolidScheme::ImplicitImmersedBoundary, 20, 0.8), 0.423, 0.005);
 }
 
 std::vector<Body> pair_of_discs() {
@@ -102,7 +102,7 @@ TEST(Order, OfTheBodiesPlaysNoPart) {
       Fluid fluid = make(c, {48, 44, Side::Periodic, Side::Wall}, CollisionOperator::Trt, 0.7);
       auto discs = pair_of_discs();
       // They overlap a little and share cells; bodies of the implicit scheme must stay apart.
-      discs[1].centre.x() = c.scheme == "implicit_immersed_boundary" ? 22.0 : 13.7;
+      discs[1].centre.x() = c.scheme == SolidScheme::ImplicitImmersedBoundary ? 22.0 : 13.7;
       if (reversed) std::swap(discs[0], discs[1]);
       for (int step = 0; step < 20; ++step) {
         fluid.place(discs);
@@ -123,7 +123,7 @@ TEST(AddedMass, OfAnOscillatingDisc) {
   const double d = 20.0, beta = 200.0, nu = d * d / (beta * period);
   const double omega = 2.0 * std::numbers::pi / period, amplitude = 0.01 * d;
   const double mass = std::numbers::pi * d * d / 4.0;
-  Fluid fluid = make({"", "layered_holdych"}, {n, n, Side::Periodic, Side::Periodic},
+  Fluid fluid = make(SolidTerm::LayeredHoldych, {n, n, Side::Periodic, Side::Periodic},
                      CollisionOperator::Trt, 0.5 + 3.0 * nu);
   double in_phase = 0.0;
   Body disc{1, {0.5 * n, 0.5 * n + 0.3}, 0.5 * d, {0.0, 0.0}, 0.0};
@@ -145,23 +145,25 @@ TEST(Galilean, DragInAMovingFrame) {
   // The array carried along with its fluid. Third-order equilibrium: 1 %; TRT's second-order one
   // has an error u² ∂u: 1.5 % at 0.05 C.
   const test::SlowArray array;
-  const auto drag = [&](CollisionOperator collision, const std::string& term, double carried) {
+  const auto drag = [&](CollisionOperator collision, SolidTerm term, double carried) {
     const Domain domain{array.n, array.n, Side::Periodic, Side::Periodic};
     Fluid fluid = make({"", term}, domain, collision, array.tau, {array.g, 0.0});
     return array.drag(fluid, carried);
   };
-  const double still = drag(CollisionOperator::CentralMoment, "layered_noble_torczynski", 0.0);
+  const double still =
+      drag(CollisionOperator::CentralMoment, SolidTerm::LayeredNobleTorczynski, 0.0);
   for (const double carried : {0.02, 0.05, 0.1})
-    EXPECT_NEAR(drag(CollisionOperator::CentralMoment, "layered_noble_torczynski", carried) / still,
-                1.0, 0.01)
+    EXPECT_NEAR(
+        drag(CollisionOperator::CentralMoment, SolidTerm::LayeredNobleTorczynski, carried) / still,
+        1.0, 0.01)
         << carried;
-  EXPECT_NEAR(drag(CollisionOperator::Trt, "layered_holdych", 0.05) /
-                  drag(CollisionOperator::Trt, "layered_holdych", 0.0),
+  EXPECT_NEAR(drag(CollisionOperator::Trt, SolidTerm::LayeredHoldych, 0.05) /
+                  drag(CollisionOperator::Trt, SolidTerm::LayeredHoldych, 0.0),
               1.0, 0.015);
 }
 
 TEST(SpringScheme, RemembersItsStretchInACheckpoint) {
-  const Case c{"spring_immersed_boundary", "none"};
+  const Case c{SolidScheme::SpringImmersedBoundary};
   const Domain domain{40, 36, Side::Periodic, Side::Wall};
   const std::vector<Body> discs{{1, {20.0, 18.0}, 5.0, {0.0, 0.0}, 0.0}};
   const auto run = [&](Fluid& fluid, int steps) {

@@ -21,9 +21,9 @@ using test::flux;
 
 constexpr double kTau = 1.0;
 
-KernelChoice choice(const char* lattice, const Vec3& force) {
+KernelChoice choice(VelocitySet lattice, const Vec3& force) {
   KernelChoice c{.force = force.norm() > 0.0,
-                 .solid_term = "resistance",
+                 .solid_term = SolidTerm::Resistance,
                  .parameters = {.tau = kTau,
                                 .magic = kResistanceMagic,
                                 .force_x = force.x(),
@@ -43,7 +43,8 @@ struct Drag {
 };
 Drag drag(const Domain& box, const Geometry& solid, int steps) {
   const double g = 1e-6, nu = (kTau - 0.5) / 3.0;
-  Fluid fluid(box, choice(box.dimension() == 2 ? "D2Q9" : "D3Q19", {g, 0.0, 0.0}));
+  Fluid fluid(box,
+              choice(box.dimension() == 2 ? VelocitySet::D2Q9 : VelocitySet::D3Q19, {g, 0.0, 0.0}));
   std::vector<BodyLoad> loads;
   if (const auto* ball = std::get_if<Ball>(&solid.shape)) {
     Body body;
@@ -82,7 +83,7 @@ TEST(Mesh, OfASphereHasTheDragOfTheSphere) {
 TEST(Mesh, OfABoxOnTheCellsIsABlock) {
   const CellBox block{{5, 4, 6}, {11, 9, 10}};
   const auto run = [&](auto&& add) {
-    Fluid fluid(kCube, choice("D3Q19", {1e-6, 3e-7, 0.0}));
+    Fluid fluid(kCube, choice(VelocitySet::D3Q19, {1e-6, 3e-7, 0.0}));
     add(fluid);
     fluid.advance(101);
     std::vector<double> all;
@@ -125,7 +126,7 @@ double pipe_flux(const Domain& box, const Vec3& way) {
     const Vec3 place = middle + offset;
     pipes.push_back(test::cylinder_mesh(place - 400.0 * along, place + 400.0 * along, r, 128));
   }
-  Fluid fluid(box, choice("D3Q19", g * along));
+  Fluid fluid(box, choice(VelocitySet::D3Q19, g * along));
   fluid.add(of(test::together(pipes), true));
   fluid.advance(800);  // twelve times the slowest decay, R²/5.8ν
   const double mean =
@@ -158,7 +159,7 @@ TEST(Mesh, LetsNothingThrough) {
   const double angle = 0.4;
   const TriangleMesh plate =
       test::turned(test::box_mesh({12.5, -30, -30}, {17.5, 30, 30}), {15, 6, 5}, {0, 1, 0}, angle);
-  Fluid fluid(box, choice("D3Q19", {}));
+  Fluid fluid(box, choice(VelocitySet::D3Q19, {}));
   fluid.add(of(plate));
   const auto each_left_cell = [&](auto&& f) {
     for (int z = 0; z < box.nz; ++z)
@@ -237,7 +238,7 @@ TEST(Image, OfAPackingTakesTheMemoryOfItsSpheres) {
                  static_cast<float>(span.fractions[i]);
          });
   }
-  Fluid drawn(box, choice("D3Q19", {})), placed(box, choice("D3Q19", {}));
+  Fluid drawn(box, choice(VelocitySet::D3Q19, {})), placed(box, choice(VelocitySet::D3Q19, {}));
   drawn.add({VoxelSolid{image, {}, 1, 1}});
   placed.place(spheres);
   auto as_image = drawn.bytes(), as_spheres = placed.bytes();
@@ -252,7 +253,7 @@ TEST(Image, OfAPackingTakesTheMemoryOfItsSpheres) {
 TEST(Mesh, KeepsItsLoadsOverARestart) {
   const Geometry ball = of(test::sphere_mesh({8.1, 8.2, 7.9}, 5.0, 3));
   const auto fresh = [&] {
-    Fluid fluid(kCube, choice("D3Q19", {1e-6, 0.0, 0.0}));
+    Fluid fluid(kCube, choice(VelocitySet::D3Q19, {1e-6, 0.0, 0.0}));
     fluid.add(ball);
     return fluid;
   };

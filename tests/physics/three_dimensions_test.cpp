@@ -16,7 +16,7 @@ namespace {
 using namespace lbm;
 using std::numbers::pi;
 
-KernelChoice kernel(CollisionOperator collision, const std::string& lattice, double tau) {
+KernelChoice kernel(CollisionOperator collision, VelocitySet lattice, double tau) {
   KernelChoice choice;
   choice.collision = collision;
   choice.lattice = lattice;
@@ -90,14 +90,15 @@ TEST_P(TurnTest, ATurnedOrMirroredStateGivesTheTurnedResult) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Operators, TurnTest,
-                         testing::Combine(testing::Values("D3Q19", "D3Q27"),
-                                          testing::ValuesIn(known_collisions())),
+                         testing::Combine(testing::Values(VelocitySet::D3Q19, VelocitySet::D3Q27),
+                                          testing::ValuesIn(choices<CollisionOperator>())),
                          [](const auto& info) {
-                           return std::get<0>(info.param) + "_" + name_of(std::get<1>(info.param));
+                           return name_of(std::get<0>(info.param)) + "_" +
+                                  name_of(std::get<1>(info.param));
                          });
 
 TEST(Channel, IsAParabolaToRoundOffAlongEachAxis) {
-  for (const char* lattice : {"D3Q19", "D3Q27"})
+  for (const VelocitySet lattice : {VelocitySet::D3Q19, VelocitySet::D3Q27})
     for (int flow = 0; flow < 3; ++flow) {
       const int across = (flow + 1) % 3, n = 12;
       Cell3 cells{5, 5, 5};
@@ -123,8 +124,8 @@ TEST(Spheres, GiveTheFluidWhatTheyLose) {
   // In a periodic box the momentum that the fluid gains is what the spheres lose, to round-off; two
   // of them share cells, one lies across the corner.
   const Domain box{24, 22, Side::Periodic, Side::Periodic, 20, Side::Periodic};
-  KernelChoice choice = kernel(CollisionOperator::Trt, "D3Q19", 0.8);
-  choice.solid_term = "layered_resistance";
+  KernelChoice choice = kernel(CollisionOperator::Trt, VelocitySet::D3Q19, 0.8);
+  choice.solid_term = SolidTerm::LayeredResistance;
   Fluid fluid(box, choice);
   std::vector<Body> bodies{{1, {0.3, 0.2, 19.8}, 4.0, {0.02, -0.01, 0.01}, {0.001, 0.002, -0.001}},
                            {2, {12.0, 11.0, 10.0}, 4.0, {-0.02, 0.01, 0.0}, Spin()},
@@ -157,8 +158,8 @@ TEST(Spheres, FeelTheTorqueOfStokes) {
   const double radius = 5.0, tau = 0.8, nu = (tau - 0.5) / 3.0;
   const double fraction = 4.0 / 3.0 * pi * radius * radius * radius / (n * n * n);
   for (const Vec3& axis : {Vec3(0.0, 0.0, 1.0), Vec3(0.6, -0.48, 0.64)}) {
-    KernelChoice choice = kernel(CollisionOperator::Trt, "D3Q19", tau);
-    choice.solid_term = "layered_resistance";
+    KernelChoice choice = kernel(CollisionOperator::Trt, VelocitySet::D3Q19, tau);
+    choice.solid_term = SolidTerm::LayeredResistance;
     choice.parameters.magic = kResistanceMagic;
     Fluid fluid({n, n, Side::Periodic, Side::Periodic, n, Side::Periodic}, choice);
     const Body sphere{1, {20.2, 19.7, 20.4}, radius, Vec3(), 1e-4 * axis};
@@ -194,8 +195,8 @@ TEST(Spheres, FeelTheLubricationOfAWall) {
   const double radius = 6.0, tau = 0.8, nu = (tau - 0.5) / 3.0, speed = 1e-4;
   const Domain box{56, 44, Side::Periodic, Side::Wall, 56, Side::Periodic};
   for (const auto& [gap, lattice_alone] : {std::pair(0.25, 0.62), std::pair(3.0, 1.0)}) {
-    KernelChoice choice = kernel(CollisionOperator::Trt, "D3Q19", tau);
-    choice.solid_term = "layered_resistance";
+    KernelChoice choice = kernel(CollisionOperator::Trt, VelocitySet::D3Q19, tau);
+    choice.solid_term = SolidTerm::LayeredResistance;
     choice.parameters.magic = kResistanceMagic;
     Fluid fluid(box, choice);
     const std::vector<Body> sphere{{1, {28.2, radius + gap, 27.7}, radius, {0.0, -speed, 0.0}}};
@@ -214,7 +215,7 @@ TEST(SinglePrecision, LosesNoMassAndStaysNearDouble) {
   const Domain box{20, 18, Side::Wall, Side::Wall, 16, Side::Wall};
   double speed[2];
   for (const Precision precision : {Precision::Double, Precision::Single}) {
-    KernelChoice choice = kernel(CollisionOperator::Trt, "D3Q19", 0.6);
+    KernelChoice choice = kernel(CollisionOperator::Trt, VelocitySet::D3Q19, 0.6);
     choice.precision = precision;
     Fluid fluid(box, choice);
     const Opening top = Opening::whole(box, SideName::Top);

@@ -126,7 +126,7 @@ double taylor_couette(double index, double inner, double outer) {
   const double surface_rate = 0.0015, nu = (tau - 0.5) / 3.0;  // at the inner cylinder
   const Gel gel{.index = index};
   Fluid fluid({size, size},
-              {.solid_term = "resistance",
+              {.solid_term = SolidTerm::Resistance,
                .parameters = parameters_beside(inner, 2, gel.law(tau, surface_rate), tau)});
   const double exact = 2.0 * pi * inner * inner * nu * surface_rate;
   const double spin = surface_rate * 0.5 * index * (1.0 - std::pow(inner / outer, 2.0 / index));
@@ -148,9 +148,9 @@ double sphere_drag(double index, double radius) {
   const int size = 2 * static_cast<int>(std::ceil(4.0 * radius)) + 4;
   const double speed = 5e-4, rate = speed / (2.0 * radius), nu = (tau - 0.5) / 3.0;
   KernelChoice choice{
-      .solid_term = "layered_resistance",
+      .solid_term = SolidTerm::LayeredResistance,
       .parameters = parameters_beside(radius, 3, Gel{.index = index}.law(tau, rate), tau),
-      .lattice = "D3Q19"};
+      .lattice = VelocitySet::D3Q19};
   choice.parameters.magic = kResistanceMagic;
   Fluid fluid({size, size, Side::Wall, Side::Wall, size, Side::Wall}, choice);
   const Vec3 centre(0.5 * size + 0.137, 0.5 * size - 0.211, 0.5 * size + 0.31);
@@ -179,7 +179,7 @@ TEST(Sphere, Slow_DragInPowerLawFluids) {
 // sheared everywhere as at its walls.
 TEST(HardCases, StayBoundedWithEveryOperator) {
   constexpr int n = 24;
-  for (const CollisionOperator collision : known_collisions())
+  for (const CollisionOperator collision : choices<CollisionOperator>())
     for (const double tau : {0.53, 1.0})
       for (const Gel& gel :
            {Gel{.index = 0.3}, Gel{.index = 0.5, .yield_part = 0.7}, Gel{.index = 2.0}}) {

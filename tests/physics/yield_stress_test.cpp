@@ -47,7 +47,7 @@ TEST(CoveredCell, HasThePartOfTheStressThatItIsTakenFor) {
   const Cylinders c{50.0, 62.0};
   CollisionParameters p{.tau = tau, .magic = kResistanceMagic};
   p.viscosity_table = std::make_shared<RelaxationTable>([](double) { return tau; });
-  Fluid fluid({c.size, c.size}, {.solid_term = "layered_resistance", .parameters = p});
+  Fluid fluid({c.size, c.size}, {.solid_term = SolidTerm::LayeredResistance, .parameters = p});
   fluid.place(c.bodies(spin));
   fluid.advance(5000);
   const double r2 = c.inner * c.inner, big2 = c.outer * c.outer;
@@ -73,7 +73,7 @@ double bingham_torque(double inner, double bingham) {
   const double rate = speed / inner, part = bingham / (1.0 + bingham);
   const Gel gel{.yield_part = part, .span = 30.0, .thinnest = 1e-4};
   Fluid fluid({c.size, c.size},
-              {.solid_term = "layered_resistance",
+              {.solid_term = SolidTerm::LayeredResistance,
                .parameters = parameters_beside(inner, 2, gel.law(tau, rate), tau)});
   fluid.place(c.bodies(rate));
   const double yield = part * nu * rate, plastic = (1.0 - part) * nu;
@@ -109,10 +109,10 @@ double critical_yield_number(int dimension, double diameter, int box,
   constexpr double tau = 3.0, speed = 1e-3, bingham = 1600.0;
   const Gel gel{.yield_part = bingham / (1.0 + bingham), .span = 30.0, .thinnest = 1e-4};
   const bool flat = dimension == 2;
-  KernelChoice choice{.solid_term = "layered_resistance",
+  KernelChoice choice{.solid_term = SolidTerm::LayeredResistance,
                       .parameters = parameters_beside(0.5 * diameter, dimension,
                                                       gel.law(tau, speed / diameter), tau),
-                      .lattice = flat ? "D2Q9" : "D3Q19"};
+                      .lattice = flat ? VelocitySet::D2Q9 : VelocitySet::D3Q19};
   choice.parameters.magic = kResistanceMagic;
   Fluid fluid(flat ? Domain{box, box, Side::Wall, Side::Wall}
                    : Domain{box, box, Side::Wall, Side::Wall, box, Side::Wall},

@@ -98,7 +98,7 @@ inline void expect_same_cells(const Fluid& part, const Fluid& whole, double limi
 }
 
 struct Box {
-  std::string lattice;
+  VelocitySet lattice;
   Domain domain;
 };
 
@@ -107,9 +107,9 @@ inline std::vector<Box> boxes() {
   const Side sides[] = {Side::Periodic, Side::Wall};
   for (const Side x : sides)
     for (const Side y : sides) {
-      all.push_back({"D2Q9", {29, 23, x, y}});
+      all.push_back({VelocitySet::D2Q9, {29, 23, x, y}});
       for (const Side z : sides)
-        for (const char* lattice : {"D3Q19", "D3Q27"})
+        for (const VelocitySet lattice : {VelocitySet::D3Q19, VelocitySet::D3Q27})
           all.push_back({lattice, {23, 14, x, y, 13, z}});
     }
   return all;
@@ -136,9 +136,9 @@ inline std::vector<Cuts> cuts_of(const Domain& d, const Cell3& grid) {
   return {equal_cuts(d, grid), uneven};
 }
 
-inline KernelChoice choice_for(const std::string& lattice, Precision precision) {
+inline KernelChoice choice_for(VelocitySet lattice, Precision precision) {
   return {.collision = CollisionOperator::Trt,
-          .solid_term = "layered_resistance",
+          .solid_term = SolidTerm::LayeredResistance,
           .parameters = {.tau = 0.7},
           .lattice = lattice,
           .precision = precision};

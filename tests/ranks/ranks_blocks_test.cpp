@@ -12,7 +12,7 @@ using namespace test;
 // A packing in the lower half of a box: the cuts move there, and all ranks agree on them.
 TEST(Ranks, ShareTheWorkOfAPacking) {
   const Domain domain{48, 40, Side::Periodic, Side::Periodic, 96, Side::Wall};
-  const KernelChoice choice = choice_for("D3Q19", Precision::Double);
+  const KernelChoice choice = choice_for(VelocitySet::D3Q19, Precision::Double);
   std::vector<Body> bodies;
   for (int i = 0; i < 4 * 3 * 4; ++i)
     bodies.push_back({i + 1,

@@ -40,7 +40,7 @@ class SharedPath {
 
 TEST(Ranks, GoOnFromAStateOfAnotherGrid) {
   const Domain domain{23, 14, Side::Wall, Side::Periodic, 13, Side::Wall};
-  const KernelChoice choice = choice_for("D3Q19", Precision::Double);
+  const KernelChoice choice = choice_for(VelocitySet::D3Q19, Precision::Double);
   const auto make = [&](const Decomposition& ranks) {
     Fluid fluid(ranks, choice);
     add_patches(fluid);
@@ -88,7 +88,7 @@ TEST(Ranks, WriteTheFilesOfOneAlone) {
       if (grid[0] > 1) continue;
       const Decomposition ranks(domain, MPI_COMM_WORLD, grid), alone(domain);
       const auto write = [&](const Decomposition& d, const std::string& name) {
-        Fluid fluid(d, choice_for("D3Q19", precision));
+        Fluid fluid(d, choice_for(VelocitySet::D3Q19, precision));
         fluid.add_wall({3, 0, 0}, {9, 4, domain.nz});
         randomise(fluid);
         fluid.place(bodies_in(domain));

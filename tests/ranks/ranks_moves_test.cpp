@@ -48,10 +48,10 @@ TEST(Ranks, GoOnWithOtherBlocks) {
     if (box.domain.y == Side::Periodic) continue;
     for (const Precision precision : {Precision::Double, Precision::Single}) {
       KernelChoice choice = choice_for(box.lattice, precision);
-      if (box.lattice == "D3Q19") choice.eddies = EddyModel::Wale;
-      if (box.lattice == "D3Q19") choice.parameters.smagorinsky = 0.1;
+      if (box.lattice == VelocitySet::D3Q19) choice.eddies = EddyModel::Wale;
+      if (box.lattice == VelocitySet::D3Q19) choice.parameters.smagorinsky = 0.1;
       for (const Cell3& grid : grids(box.domain)) {
-        SCOPED_TRACE(box.lattice + " on " + std::to_string(grid[0]) + " x " +
+        SCOPED_TRACE(name_of(box.lattice) + " on " + std::to_string(grid[0]) + " x " +
                      std::to_string(grid[1]) + " x " + std::to_string(grid[2]));
         expect_goes_on(box, choice, grid);
       }
@@ -128,7 +128,7 @@ double part_of_load(std::int64_t id, int rank) {
 // of a load reaches the solid.
 TEST(Ranks, RelayParticlesToTheBlocksThatHaveMoved) {
   for (const Box& box : boxes()) {
-    if (box.lattice == "D3Q27") continue;
+    if (box.lattice == VelocitySet::D3Q27) continue;
     const Units units{0.01, 0.1, 1000.0, 0.01, {-0.3, 0.2, 0.1}};
     const auto grains = grains_in(box.domain, units);
     for (const Cell3& grid : grids(box.domain)) {

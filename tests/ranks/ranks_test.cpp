@@ -55,7 +55,8 @@ TEST(Ranks, SweepTheSameCellsAsOneAlone) {
 /// What walls that move do does not depend on the ranks: cells, and loads to 1e-12 of the largest.
 TEST(Ranks, MoveTheSameWallsAsOneAlone) {
   const Side p = Side::Periodic, w = Side::Wall;
-  for (const Box& box : {Box{"D2Q9", {29, 23, p, w}}, Box{"D3Q19", {23, 14, p, w, 13, p}}})
+  for (const Box& box :
+       {Box{VelocitySet::D2Q9, {29, 23, p, w}}, Box{VelocitySet::D3Q19, {23, 14, p, w, 13, p}}})
     for (const Cell3& grid : grids(box.domain)) {
       SCOPED_TRACE(testing::Message() << box.lattice << ' ' << grid[0] << grid[1] << grid[2]);
       const Decomposition ranks(box.domain, MPI_COMM_WORLD, grid);
@@ -86,7 +87,7 @@ TEST(Ranks, MoveTheSameWallsAsOneAlone) {
 // The mean velocity is added up in whole numbers, so that every grid finds the same force.
 TEST(Ranks, HoldTheSameFlow) {
   const Domain domain{23, 14, Side::Wall, Side::Periodic, 13, Side::Wall};
-  KernelChoice choice = choice_for("D3Q19", Precision::Double);
+  KernelChoice choice = choice_for(VelocitySet::D3Q19, Precision::Double);
   choice.force = true;
   for (const Cell3& grid : grids(domain)) {
     const Decomposition ranks(domain, MPI_COMM_WORLD, grid);
@@ -106,9 +107,9 @@ TEST(Ranks, HoldTheSameFlow) {
 // every grid; the pressure on an opening from the mass through it, added up in another order.
 TEST(Ranks, HaveTheSameEddiesAndTheSameHeldPressure) {
   const Domain domain{23, 14, Side::Wall, Side::Periodic, 13, Side::Wall};
-  KernelChoice choice = choice_for("D3Q19", Precision::Double);
+  KernelChoice choice = choice_for(VelocitySet::D3Q19, Precision::Double);
   choice.collision = CollisionOperator::CentralMoment;
-  choice.solid_term = "layered_noble_torczynski";
+  choice.solid_term = SolidTerm::LayeredNobleTorczynski;
   choice.parameters.smagorinsky = 0.2;
   choice.eddies = EddyModel::Wale;
   for (const Cell3& grid : grids(domain)) {

@@ -51,14 +51,14 @@ Cell NaiveLattice::solid_term(const Cell& f, const Cell& eq, double rho,
     const double holdych = f[o] - f[i] + solid[i] - solid[o];
     if (c.wall)
       omega[i] = f[o] - f[i];  // full bounce-back
-    else if (choice_.solid_term == "noble_torczynski")
+    else if (choice_.solid_term == lbm::SolidTerm::NobleTorczynski)
       omega[i] = noble_torczynski;
-    else if (choice_.solid_term == "holdych")
+    else if (choice_.solid_term == lbm::SolidTerm::Holdych)
       omega[i] = holdych;
-    else if (choice_.solid_term == "superposition")
+    else if (choice_.solid_term == lbm::SolidTerm::Superposition)
       omega[i] = solid[i] - f[i] + (1.0 - 1.0 / choice_.parameters.tau) * (f[i] - eq[i]);
     else if (!c.whole)
-      omega[i] = choice_.solid_term == "layered_holdych" ? holdych : noble_torczynski;
+      omega[i] = choice_.solid_term == lbm::SolidTerm::LayeredHoldych ? holdych : noble_torczynski;
     else
       omega[i] = c.core ? solid[i] - f[i] : 0.95 * noble_torczynski + 0.05 * (solid[i] - f[i]);
   }
@@ -242,7 +242,7 @@ Cell NaiveLattice::resistance(std::size_t cell) {
     exchange = (0.5 * Eigen::Matrix2d::Identity() + n / s).inverse();
     others = 1.0 / (0.5 + n(1, 1) / s);
     even_rate = 1.0 / tau;
-  } else if (!cover.wall && choice_.solid_term == "layered_resistance") {
+  } else if (!cover.wall && choice_.solid_term == lbm::SolidTerm::LayeredResistance) {
     const double shell = std::max(1.0, 1.0 / (0.5 + 0.005 / (p.tau - 0.5)));
     others = cover.core ? 1.0 : 2.0;
     exchange = Eigen::Vector2d(cover.core ? 1.0 : shell, others).asDiagonal();
@@ -253,7 +253,7 @@ Cell NaiveLattice::resistance(std::size_t cell) {
   const Vec3 u = (at_surface ? m.j + 0.5 * force - 0.5 * lost : m.j) / m.rho;
   const Cell eq = equilibrium(m.rho, u), solid = equilibrium(m.rho, cover.velocity);
   const Cell push = choice_.force ? source(u) : Cell{};
-  const bool reflects = cover.wall || choice_.solid_term == "resistance";
+  const bool reflects = cover.wall || choice_.solid_term == lbm::SolidTerm::Resistance;
   Cell out{};
   for (int i = 0; i < l_.Q; ++i) {
     const int o = opposite(i);

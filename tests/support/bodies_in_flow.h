@@ -18,7 +18,7 @@ namespace test {
 using namespace lbm;
 
 /// A fluid at rest with TRT and a solid term. @param g  body force on a cell
-inline Fluid slow_fluid(const std::string& term, const Domain& domain, double tau, const Vec3& g) {
+inline Fluid slow_fluid(SolidTerm term, const Domain& domain, double tau, const Vec3& g) {
   const bool flat = domain.dimension() == 2;
   KernelChoice choice{.force = g.norm() > 0.0,
                       .solid_term = term,
@@ -28,7 +28,7 @@ inline Fluid slow_fluid(const std::string& term, const Domain& domain, double ta
                                      .force_y = g.y(),
                                      .force_z = g.z()},
                       .weight = flat ? WeightRule::Viscous : WeightRule::Balanced,
-                      .lattice = flat ? "D2Q9" : "D3Q19"};
+                      .lattice = flat ? VelocitySet::D2Q9 : VelocitySet::D3Q19};
   Fluid fluid(domain, choice);
   for (int z = 0; z < domain.nz; ++z)
     for (int y = 0; y < domain.ny; ++y)
@@ -50,8 +50,8 @@ inline double flux(Fluid& fluid) {
 
 /// Error of the drag of an array at Re = 0.01, in per cent; n cells a period, the body's centre
 /// `offset` from a cell's corner. Not a number where it blows up.
-inline double array_error(const std::string& term, int dimension, double fraction, int n,
-                          double tau, const Vec3& offset) {
+inline double array_error(SolidTerm term, int dimension, double fraction, int n, double tau,
+                          const Vec3& offset) {
   const bool flat = dimension == 2;
   const double nu = (tau - 0.5) / 3.0, pi = std::numbers::pi;
   const double radius =
@@ -80,8 +80,7 @@ inline double array_error(const std::string& term, int dimension, double fractio
 struct Errors {
   double mean = 0.0, spread = 0.0;
 };
-inline Errors array_errors(const std::string& term, int dimension, double fraction, int n,
-                           double tau) {
+inline Errors array_errors(SolidTerm term, int dimension, double fraction, int n, double tau) {
   Errors errors;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (Vec3 offset : kPlacesInACell) {
@@ -96,8 +95,7 @@ inline Errors array_errors(const std::string& term, int dimension, double fracti
 }
 
 /// Error in per cent of the torque on a disc of a radius that spins in a ring of twice that.
-inline double ring_torque_error(const std::string& term, double radius, double tau,
-                                const Vec3& offset) {
+inline double ring_torque_error(SolidTerm term, double radius, double tau, const Vec3& offset) {
   const double nu = (tau - 0.5) / 3.0, spin = 1e-3 * nu / radius, outer = 2.0 * radius;
   const int n = static_cast<int>(2.0 * outer) + 8;
   Fluid fluid = slow_fluid(term, {n, n, Side::Periodic, Side::Periodic}, tau, Vec3());
@@ -111,8 +109,7 @@ inline double ring_torque_error(const std::string& term, double radius, double t
 }
 
 /// The same of a sphere in a periodic box of six radii: 8πμR³ω/(1 - φ) [Zuzovsky et al. 1983].
-inline double sphere_torque_error(const std::string& term, double radius, double tau,
-                                  const Vec3& axis) {
+inline double sphere_torque_error(SolidTerm term, double radius, double tau, const Vec3& axis) {
   const double nu = (tau - 0.5) / 3.0, spin = 1e-3 * nu / radius, pi = std::numbers::pi;
   const int n = static_cast<int>(6.0 * radius);
   Fluid fluid =

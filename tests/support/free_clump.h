@@ -106,8 +106,8 @@ class FreeClump {
 };
 
 /// The coupling of a clump in lattice units.
-inline Particles clump_coupling(const Fluid& fluid, const std::string& solid_term,
-                                double virtual_mass = 0.0, const Vec3& gravity = Vec3()) {
+inline Particles clump_coupling(const Fluid& fluid, SolidTerm solid_term, double virtual_mass = 0.0,
+                                const Vec3& gravity = Vec3()) {
   Scene scene;
   scene.fluid.density = 1.0;
   scene.fluid.gravity = gravity;

@@ -23,9 +23,9 @@ struct FreeDisc {
   Vec3 start;
   int inserted = 0;  ///< step before which it is not there
   int steps = 0;
-  int fluid_steps = 1;                            ///< a coupling interval
-  std::string solid_term = "layered_resistance";  ///< of the fluid's kernel
-  std::function<void()> seen = [] {};             ///< called after each interval
+  int fluid_steps = 1;                                  ///< a coupling interval
+  SolidTerm solid_term = SolidTerm::LayeredResistance;  ///< of the fluid's kernel
+  std::function<void()> seen = [] {};                   ///< called after each interval
 };
 
 /// Of each interval in which the disc was there: place and velocity at its end, mean force.

@@ -17,8 +17,13 @@ using namespace lbm;
 
 /// A scheme of its own, or covered cells with a solid term.
 struct Case {
-  std::string scheme, term;
-  std::string name() const { return scheme.empty() ? term : scheme; }
+  SolidScheme scheme = SolidScheme::ImmersedMovingBoundary;
+  SolidTerm term = SolidTerm::None;
+
+  Case(SolidScheme scheme) : scheme(scheme) {}
+  Case(SolidTerm term) : term(term) {}
+  bool covers() const { return scheme == SolidScheme::ImmersedMovingBoundary; }
+  std::string name() const { return covers() ? name_of(term) : name_of(scheme); }
 };
 
 inline Fluid make(const Case& c, const Domain& domain, CollisionOperator collision, double tau,
@@ -31,7 +36,7 @@ inline Fluid make(const Case& c, const Domain& domain, CollisionOperator collisi
                               .magic = by_resistance(c.term) ? kResistanceMagic : 3.0 / 16.0,
                               .force_x = force.x(),
                               .force_y = force.y()}});
-  if (!c.scheme.empty()) fluid.use(make_scheme(solid_scheme(c.scheme), domain, fluid.lattice()));
+  if (!c.covers()) fluid.use(make_scheme(c.scheme, domain, fluid.lattice()));
   for (int y = 0; y < domain.ny; ++y)
     for (int x = 0; x < domain.nx; ++x) fluid.set_equilibrium(x, y, 1.0, {0.0, 0.0});
   return fluid;
@@ -57,15 +62,15 @@ inline Vec3 momentum(const Fluid& fluid, const std::vector<Body>& without = {}) 
 }
 
 /// Where solids act by the links that cross their surface, the cells inside are none of the fluid.
-inline bool acts_by_links(const std::string& scheme) {
-  return scheme.find("bounce_back") != std::string::npos;
+inline bool acts_by_links(SolidScheme scheme) {
+  return scheme == SolidScheme::BounceBack || scheme == SolidScheme::InterpolatedBounceBack;
 }
 
 /// A step of a periodic fluid with discs in it: what the fluid's change of momentum and the
 /// impulses on the discs leave, over the latter where they are above 1.
 class MomentumBalance {
  public:
-  MomentumBalance(Fluid& fluid, const std::string& scheme)
+  MomentumBalance(Fluid& fluid, SolidScheme scheme)
       : fluid_(fluid), links_(acts_by_links(scheme)) {}
 
   double step(const std::vector<Body>& discs) {

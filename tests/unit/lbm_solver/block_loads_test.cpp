@@ -11,10 +11,11 @@ using namespace lbm;
 constexpr double kForce = 1e-6;
 
 /// A fluid that a force drives along x past blocks, until nothing changes any more.
-Fluid steady(const Domain& domain, const char* lattice, const std::vector<CellBox>& blocks,
+Fluid steady(const Domain& domain, VelocitySet lattice, const std::vector<CellBox>& blocks,
              int steps) {
-  KernelChoice choice{
-      .force = true, .solid_term = "resistance", .parameters = {.tau = 0.8, .force_x = kForce}};
+  KernelChoice choice{.force = true,
+                      .solid_term = SolidTerm::Resistance,
+                      .parameters = {.tau = 0.8, .force_x = kForce}};
   choice.lattice = lattice;
   Fluid fluid(domain, choice);
   for (const CellBox& block : blocks) fluid.add_wall(block.from, block.to);
@@ -23,21 +24,23 @@ Fluid steady(const Domain& domain, const char* lattice, const std::vector<CellBo
 }
 
 struct Box {
-  const char* lattice;
+  VelocitySet lattice;
   Domain domain;
   CellBox block;
   int cells;  // of the block
 };
 class EachBox : public testing::TestWithParam<Box> {};
-INSTANTIATE_TEST_SUITE_P(
-    Boxes, EachBox,
-    testing::Values(
-        Box{"D2Q9", {24, 20, Side::Periodic, Side::Periodic}, {{9, 7, 0}, {15, 12, 1}}, 30},
-        Box{"D3Q19",
-            {12, 10, Side::Periodic, Side::Periodic, 10, Side::Periodic},
-            {{4, 3, 3}, {8, 7, 7}},
-            64}),
-    [](const auto& info) { return std::string(info.param.lattice); });
+INSTANTIATE_TEST_SUITE_P(Boxes, EachBox,
+                         testing::Values(Box{VelocitySet::D2Q9,
+                                             {24, 20, Side::Periodic, Side::Periodic},
+                                             {{9, 7, 0}, {15, 12, 1}},
+                                             30},
+                                         Box{VelocitySet::D3Q19,
+                                             {12, 10, Side::Periodic, Side::Periodic, 10,
+                                              Side::Periodic},
+                                             {{4, 3, 3}, {8, 7, 7}},
+                                             64}),
+                         [](const auto& info) { return name_of(info.param.lattice); });
 
 // What drives the fluid outside of the block is all that it passes on: F = G × fluid cells. The
 // tolerance is what is left of the start after the steps; round-off is below it.
@@ -56,8 +59,9 @@ TEST(BlockLoads, AreTheSameWithinARegion) {
   omp_set_num_threads(2);
   const Domain channel{30, 16, Side::Periodic, Side::Wall};
   const CellBox block{{10, 3, 0}, {18, 8, 1}};
-  KernelChoice choice{
-      .force = true, .solid_term = "resistance", .parameters = {.tau = 0.8, .force_x = kForce}};
+  KernelChoice choice{.force = true,
+                      .solid_term = SolidTerm::Resistance,
+                      .parameters = {.tau = 0.8, .force_x = kForce}};
   Fluid one(channel, choice), together(channel, choice);
   for (Fluid* fluid : {&one, &together}) {
     fluid->add_wall(block.from, block.to);
@@ -83,8 +87,9 @@ TEST(BlockLoads, AreTheSameWithinARegion) {
 // Bodies, whose loads are of two steps, beside a block.
 TEST(BlockLoads, GoWithTheLoadsOfBodies) {
   const Domain channel{30, 16, Side::Periodic, Side::Wall};
-  KernelChoice choice{
-      .force = true, .solid_term = "resistance", .parameters = {.tau = 0.8, .force_x = kForce}};
+  KernelChoice choice{.force = true,
+                      .solid_term = SolidTerm::Resistance,
+                      .parameters = {.tau = 0.8, .force_x = kForce}};
   Fluid one(channel, choice), together(channel, choice);
   const std::vector<Body> disc{{1, {22.3, 8.1, 0.0}, 3.1, {}, {}}};
   std::vector<double> step_by_step, in_one_call;
@@ -109,7 +114,7 @@ TEST(BlockLoads, AddUpWhereBlocksTouch) {
   const Domain channel{30, 16, Side::Periodic, Side::Wall};
   const CellBox whole{{10, 3, 0}, {18, 8, 1}}, low{{10, 3, 0}, {18, 5, 1}},
       high{{10, 5, 0}, {18, 8, 1}};
-  Fluid fluid = steady(channel, "D2Q9", {whole}, 500);
+  Fluid fluid = steady(channel, VelocitySet::D2Q9, {whole}, 500);
   const BodyLoad one = BlockLoads(fluid, {whole}).loads()[0];
   const auto two = BlockLoads(fluid, {low, high}).loads();
   const auto about = [&](const BodyLoad& load, const CellBox& box) -> Vec3 {

@@ -10,7 +10,7 @@ namespace {
 
 using namespace lbm;
 
-KernelChoice kernel(CollisionOperator collision, const std::string& solid_term = "none") {
+KernelChoice kernel(CollisionOperator collision, SolidTerm solid_term = SolidTerm::None) {
   return {.collision = collision, .solid_term = solid_term, .parameters = {.tau = 0.7}};
 }
 
@@ -18,8 +18,8 @@ TEST(SideLinks, ASlotKeepsItsEdgesNoSlip) {
   // cells 3 … 6 of the left side: each has one straight link, and diagonals except those across the
   // ends
   const Domain domain{20, 10, Side::Wall, Side::Wall};
-  const auto links =
-      side_links(lattice("D2Q9"), domain, Block::whole(domain), test::part(SideName::Left, 3, 7));
+  const auto links = side_links(lattice(VelocitySet::D2Q9), domain, Block::whole(domain),
+                                test::part(SideName::Left, 3, 7));
   EXPECT_EQ(links.size(), 4U + 2 * 3);
   for (const Link& l : links) {
     EXPECT_EQ(l.cell[0], 0);
@@ -32,7 +32,7 @@ TEST(SideLinks, ASlotKeepsItsEdgesNoSlip) {
 TEST(SideLinks, CornersOfTheBoxBelongToTheWalls) {
   const auto links = [](Side across) {
     const Domain domain{20, 10, across, Side::Wall};
-    return side_links(lattice("D2Q9"), domain, Block::whole(domain),
+    return side_links(lattice(VelocitySet::D2Q9), domain, Block::whole(domain),
                       Opening::whole(domain, SideName::Top));
   };
   EXPECT_EQ(links(Side::Wall).size(), 20U + 2 * 19);
@@ -116,13 +116,13 @@ TEST_P(SymmetryTest, ATurnedOrMirroredStateGivesTheTurnedResult) {
         EXPECT_LT(largest, GetParam() == CollisionOperator::CentralMoment ? 1e-15 : 1e-17);
       }
 }
-INSTANTIATE_TEST_SUITE_P(Operators, SymmetryTest, testing::ValuesIn(known_collisions()));
+INSTANTIATE_TEST_SUITE_P(Operators, SymmetryTest, testing::ValuesIn(choices<CollisionOperator>()));
 
 TEST(Blocks, AreWallsHalfWayBetweenTheCells) {
   // two rows of block at the bottom of a box make a box that is two rows lower
   const int nx = 13, ny = 12;
   KernelChoice plain{.force = true, .parameters = {.tau = 0.8, .force_x = 1e-5}}, with = plain;
-  with.solid_term = "layered_holdych";
+  with.solid_term = SolidTerm::LayeredHoldych;
   Fluid small({nx, ny, Side::Periodic, Side::Wall}, plain);
   Fluid large({nx, ny + 2, Side::Periodic, Side::Wall}, with);
   large.add_wall({0, 0, 0}, {nx, 2, 1});

@@ -47,7 +47,7 @@ std::vector<protocol::Particle> dumbbell(double mass = 600.0) {
 constexpr Domain kBox{20, 20, Side::Periodic, Side::Periodic, 20, Side::Periodic};
 
 TEST(ClumpOnTheLattice, SpheresTurnWithTheirCarrierDuringAnInterval) {
-  Particles wire(Units{}, scene(), kBox, "layered_resistance");
+  Particles wire(Units{}, scene(), kBox, SolidTerm::LayeredResistance);
   auto all = dumbbell();
   all[0].state.v = {0.1, 0.0, 0.0};
   all[0].state.omega = {0.0, 0.0, 0.5 * pi / 4.0};  // a quarter turn in four steps
@@ -62,7 +62,7 @@ TEST(ClumpOnTheLattice, SpheresTurnWithTheirCarrierDuringAnInterval) {
 }
 
 TEST(ClumpOnTheLattice, ASphereBeyondAPeriodicSideIsBroughtToItsCarrier) {
-  Particles wire(Units{}, scene(), kBox, "layered_resistance");
+  Particles wire(Units{}, scene(), kBox, SolidTerm::LayeredResistance);
   auto all = dumbbell();
   all[0].state.x[1] = 19.5;
   all[1].state.x[1] = 1.5;  // an image of 21.5
@@ -73,7 +73,7 @@ TEST(ClumpOnTheLattice, ASphereBeyondAPeriodicSideIsBroughtToItsCarrier) {
 }
 
 TEST(ClumpOnTheLattice, LoadIsTheSumAboutTheCarriersCentreWithBuoyancyOfItsVolume) {
-  Particles wire(Units{}, scene({0.0, 0.0, -0.01}), kBox, "layered_resistance");
+  Particles wire(Units{}, scene({0.0, 0.0, -0.01}), kBox, SolidTerm::LayeredResistance);
   wire.arrive(dumbbell(), 1.0);
   wire.bodies(0.0);
   wire.add(std::vector<BodyLoad>{{{1.0, 0.0, 2.0}, {0.3, 0.0, 0.0}}, {{3.0, 0.0, 5.0}, {}}});
@@ -93,7 +93,7 @@ TEST(ClumpOnTheLattice, LoadIsTheSumAboutTheCarriersCentreWithBuoyancyOfItsVolum
 TEST(ClumpOnTheLattice, GivesBackTheInertiaOfTheFluidInItsUnion) {
   const protocol::Ball balls[] = {{2, {0.0, 2.0, 0.0}, 4.0}, {3, {0.0, -2.0, 0.0}, 4.0}};
   const auto m = protocol::moments_of_union(balls, 3);
-  Particles wire(Units{}, scene(), kBox, "layered_resistance");
+  Particles wire(Units{}, scene(), kBox, SolidTerm::LayeredResistance);
   auto all = dumbbell();
   all[0].state.omega = {0.02, 0.03, 0.0};
   wire.arrive(all, 2.0);

@@ -27,7 +27,7 @@ std::vector<Body> cluster() {
 
 /// A fluid that moves, with the discs in it, after some steps.
 Fluid stirred(std::vector<Body> discs) {
-  Fluid fluid(kDomain, {.solid_term = "layered_resistance", .parameters = {.tau = 0.8}});
+  Fluid fluid(kDomain, {.solid_term = SolidTerm::LayeredResistance, .parameters = {.tau = 0.8}});
   for (int y = 0; y < kDomain.ny; ++y)
     for (int x = 0; x < kDomain.nx; ++x)
       fluid.set_equilibrium(x, y, 1.0, {0.02 * std::sin(0.3 * y), 0.03 * std::cos(0.2 * x)});

@@ -143,7 +143,7 @@ TEST(MeshFractions, OfACurvedSurfaceAreShifted) {
 TEST(Fractions, OfBodiesSmallerThanACellFallWithTheirSize) {
   for (const int dimension : {2, 3}) {
     const Domain domain = dimension == 2 ? Domain{20, 18, Side::Wall, Side::Wall} : kDomain;
-    const RadiusShift shift = radius_shift("resistance", dimension);
+    const RadiusShift shift = radius_shift(SolidTerm::Resistance, dimension);
     for (double r = 1.0; r > 1e-7; r *= 0.3) {
       const double whole =
           dimension == 2 ? std::numbers::pi * r * r : 4.0 / 3.0 * std::numbers::pi * r * r * r;

@@ -34,7 +34,7 @@ protocol::Particle particle(double vx, double omega) {
 const Domain kDomain{100, 100};
 
 TEST(Particles, EntersLatticeUnits) {
-  Particles particles(kUnits, scene_of({}), kDomain, "layered_holdych");
+  Particles particles(kUnits, scene_of({}), kDomain, SolidTerm::LayeredHoldych);
   particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
   const auto bodies = particles.bodies(2e-4);
   EXPECT_NEAR(bodies[0].centre.x(), 50.0 + 0.02 * 2e-4 / 1e-4, 1e-12);  // moved on straight
@@ -45,7 +45,7 @@ TEST(Particles, EntersLatticeUnits) {
 }
 
 TEST(Particles, LoadIsTheMeanInSiUnitsWithBuoyancy) {
-  Particles particles(kUnits, scene_of({}), kDomain, "layered_holdych");
+  Particles particles(kUnits, scene_of({}), kDomain, SolidTerm::LayeredHoldych);
   particles.arrive(std::vector{particle(0.0, 0.0)}, 4e-4);
   particles.add(std::vector<BodyLoad>{{{2.0, 0.0}, {0.0, 0.0, 4.0}}});
   particles.add(std::vector<BodyLoad>{{{4.0, 0.0}, {0.0, 0.0, 0.0}}});
@@ -63,7 +63,7 @@ TEST(Particles, GivesBackTheInertiaOfTheFluidInside) {
   coupling.buoyancy = protocol::Buoyancy::None;
   for (const bool on : {true, false}) {
     coupling.inner_inertia = on;
-    Particles particles(kUnits, scene_of(coupling), kDomain, "layered_holdych");
+    Particles particles(kUnits, scene_of(coupling), kDomain, SolidTerm::LayeredHoldych);
     particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
     particles.add(std::vector<BodyLoad>(1));
     EXPECT_EQ(particles.mean_loads(1)[0].force[0], 0.0);  // new: its past is unknown
@@ -79,7 +79,7 @@ TEST(Particles, GivesBackTheInertiaOfTheFluidInside) {
 TEST(Particles, AParticleThatLeftAndCameBackHasNoPast) {
   CouplingScene coupling;
   coupling.buoyancy = protocol::Buoyancy::None;
-  Particles particles(kUnits, scene_of(coupling), kDomain, "layered_holdych");
+  Particles particles(kUnits, scene_of(coupling), kDomain, SolidTerm::LayeredHoldych);
   particles.arrive(std::vector{particle(0.02, 0.0)}, 4e-4);
   particles.arrive({}, 4e-4);
   EXPECT_EQ(particles.bodies(0.0).size(), 0U);
@@ -97,7 +97,7 @@ TEST(Particles, AnIdOfAnotherEpochStartsAnew) {
   protocol::Particle other = particle(0.05, 0.0);
   other.shape.epoch = 7;
   for (const bool restart : {false, true}) {
-    Particles first(kUnits, scene_of(coupling), kDomain, "layered_holdych"), second = first;
+    Particles first(kUnits, scene_of(coupling), kDomain, SolidTerm::LayeredHoldych), second = first;
     first.arrive(std::vector{particle(0.02, 0.0)}, 4e-4);
     const std::int64_t body = first.bodies(0.0)[0].id;
     first.add(std::vector<BodyLoad>{{{2.0, 0.0}, {0.0, 0.0, 4.0}}});
@@ -122,7 +122,7 @@ TEST(Particles, VirtualMassLeavesASteadyLoadAsItIs) {
   CouplingScene coupling;
   coupling.buoyancy = protocol::Buoyancy::None;
   coupling.virtual_mass = 2.0;
-  Particles particles(kUnits, scene_of(coupling), kDomain, "layered_holdych");
+  Particles particles(kUnits, scene_of(coupling), kDomain, SolidTerm::LayeredHoldych);
   protocol::Load load;
   for (int k = 0; k < 60; ++k) {
     particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
@@ -137,7 +137,7 @@ TEST(Particles, VirtualMassLeavesASteadyLoadAsItIs) {
 TEST(Particles, TheFluidSeesTheHydraulicRadius) {
   Scene scene = scene_of({});
   scene.particles->hydraulic_ratio = {1.0, 0.8};
-  Particles particles(kUnits, scene, kDomain, "layered_holdych");
+  Particles particles(kUnits, scene, kDomain, SolidTerm::LayeredHoldych);
   protocol::Particle small = particle(0.0, 0.0);
   small.shape.type = 2;
   particles.arrive(std::vector{small}, 4e-4);
@@ -150,7 +150,7 @@ TEST(Particles, BuoyancyIsThatOfTheWholeParticleForEveryHydraulicRatio) {
   for (const double ratio : {1.0, 0.8, 0.5}) {
     Scene scene = scene_of({});
     scene.particles->hydraulic_ratio = {ratio};
-    Particles disc(kUnits, scene, kDomain, "layered_holdych");
+    Particles disc(kUnits, scene, kDomain, SolidTerm::LayeredHoldych);
     disc.arrive(std::vector{particle(0.0, 0.0)}, 4e-4);
     disc.add(std::vector<BodyLoad>(1));
     const double of_disc = kFluidMass * 9.8;
@@ -158,7 +158,7 @@ TEST(Particles, BuoyancyIsThatOfTheWholeParticleForEveryHydraulicRatio) {
 
     Domain cube{100, 100};
     cube.nz = 100;
-    Particles sphere(kUnits, scene, cube, "layered_holdych");
+    Particles sphere(kUnits, scene, cube, SolidTerm::LayeredHoldych);
     protocol::Particle p = particle(0.0, 0.0);
     p.state.x[2] = 0.005;
     sphere.arrive(std::vector{p}, 4e-4);
@@ -176,7 +176,7 @@ TEST(Particles, InnerFluidIsThatOfTheCoveredCells) {
   coupling.buoyancy = protocol::Buoyancy::None;
   Scene scene = scene_of(coupling);
   scene.particles->hydraulic_ratio = {0.8};
-  Particles particles(kUnits, scene, kDomain, "layered_holdych");
+  Particles particles(kUnits, scene, kDomain, SolidTerm::LayeredHoldych);
   particles.arrive(std::vector{particle(0.02, 30.0)}, 4e-4);
   particles.add(std::vector<BodyLoad>(1));
   particles.mean_loads(1);

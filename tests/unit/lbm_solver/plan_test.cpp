@@ -88,11 +88,11 @@ TEST(Plan, TellsTheErrorToExpectOfTheDrag) {
   s.numerics.magic = 0.15;
   says("not tabulated for trt with layered_resistance");
   s.numerics.magic.reset();
-  s.numerics.collision = "bgk";
-  s.numerics.solid_term = "holdych";
+  s.numerics.collision = CollisionOperator::Bgk;
+  s.numerics.solid_term = SolidTerm::Holdych;
   says("not tabulated for bgk with holdych");
-  s.numerics.collision = "central_moment";
-  s.numerics.solid_term = "auto";  // the table over τ, here 0.6
+  s.numerics.collision = CollisionOperator::CentralMoment;
+  s.numerics.solid_term.reset();  // the table over τ, here 0.6
   says("drag -9.7 % at a solid fraction of 0.2 [");
 }
 
@@ -108,19 +108,20 @@ TEST(Plan, SaysWhereATableOfErrorsEnds) {
 
 TEST(Plan, AutoTakesTheOperatorThatSuitsAndSaysWhy) {
   Scene s = settling_disc();
-  s.numerics.collision = s.numerics.solid_term = "auto";
+  s.numerics.collision.reset();
+  s.numerics.solid_term.reset();
   Plan p = make_plan(s);
   EXPECT_EQ(p.kernel.collision, CollisionOperator::Trt);
-  EXPECT_EQ(p.kernel.solid_term, "layered_resistance");
+  EXPECT_EQ(p.kernel.solid_term, SolidTerm::LayeredResistance);
   s.fluid.viscosity = 1e-6;  // Re_h = 7.5
   p = make_plan(s);
   EXPECT_EQ(p.kernel.collision, CollisionOperator::CentralMoment);
-  EXPECT_EQ(p.kernel.solid_term, "layered_noble_torczynski");
+  EXPECT_EQ(p.kernel.solid_term, SolidTerm::LayeredNobleTorczynski);
   EXPECT_NE(p.collision_reason.find("Re_h = 7.5"), std::string::npos) << p.collision_reason;
   s.fluid.viscosity = 1e-5;
   s.numerics.smagorinsky = 0.1;
   EXPECT_EQ(make_plan(s).kernel.collision, CollisionOperator::CentralMoment);
-  s.numerics.collision = "trt";
+  s.numerics.collision = CollisionOperator::Trt;
   EXPECT_NE(make_plan(s).warnings.back().find("turbulence"), std::string::npos);
 }
 

@@ -251,7 +251,7 @@ TEST(Scene, DiscsThatOverlapThroughAPeriodicSideAreRefused) {
 
 TEST(Scene, ALatticeLargerThanAnyMachineIsRefused) {
   try {
-    const Populations f(lattice("D3Q19"), {20000, 20000, 20000}, Precision::Double);
+    const Populations f(lattice(VelocitySet::D3Q19), {20000, 20000, 20000}, Precision::Double);
     FAIL() << "allocated";
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find(" cells needs 1.22e+06 GB"), std::string::npos)
@@ -291,7 +291,7 @@ TEST(Scene, OverlaysReplaceKeyByKeyAndKeepTheirFileInMessages) {
   const auto over = folder.write("over.toml", "[numerics]\ncells_per_diameter = 10\n");
   const Scene scene = read_scene({base, over});
   EXPECT_EQ(scene.numerics.cells_per_diameter, 10.0);
-  EXPECT_EQ(scene.numerics.collision, "trt");
+  EXPECT_EQ(scene.numerics.collision, CollisionOperator::Trt);
   const auto bad = folder.write("bad.toml", "[fluid]\ndensity = -1\n");
   try {
     read_scene({base, bad});

@@ -55,8 +55,9 @@ TEST(PlaneFlow, OfAChannelIsTheParabolaInEveryColumn) {
 // Past a block in a channel, where the force drives, the same flow passes every plane, through the
 // block's sides too.
 TEST(PlaneFlow, IsTheSameThroughEveryPlaneOfASteadyFlow) {
-  KernelChoice choice{
-      .force = true, .solid_term = "resistance", .parameters = {.tau = kTau, .force_x = kForce}};
+  KernelChoice choice{.force = true,
+                      .solid_term = SolidTerm::Resistance,
+                      .parameters = {.tau = kTau, .force_x = kForce}};
   Fluid fluid({12, kHeight, Side::Periodic, Side::Wall}, choice);
   fluid.add_wall({4, 4, 0}, {7, 9, 1});
   fluid.advance(20000);

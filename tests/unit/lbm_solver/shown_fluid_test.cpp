@@ -15,7 +15,7 @@ using namespace lbm;
 
 constexpr double kForce = 1e-5;
 
-KernelChoice choice(const std::string& term, CollisionOperator collision = CollisionOperator::Trt) {
+KernelChoice choice(SolidTerm term, CollisionOperator collision = CollisionOperator::Trt) {
   return {.collision = collision,
           .force = true,
           .solid_term = term,
@@ -51,20 +51,21 @@ void each_cell(const Domain& d, const std::function<void(std::size_t, int, int, 
 
 struct Box {
   Domain domain;
-  std::string lattice;
+  VelocitySet lattice;
   Body body;
 };
-const std::vector<Box> kBoxes{
-    {{37, 30, Side::Periodic, Side::Periodic}, "D2Q9", {1, {17.25, 15.5}, 7.3, {0.0, 0.0}, 0.0}},
-    {{18, 16, Side::Periodic, Side::Periodic, 16, Side::Periodic},
-     "D3Q19",
-     {1, {9.25, 8.5, 8.0}, 5.2, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}}};
+const std::vector<Box> kBoxes{{{37, 30, Side::Periodic, Side::Periodic},
+                               VelocitySet::D2Q9,
+                               {1, {17.25, 15.5}, 7.3, {0.0, 0.0}, 0.0}},
+                              {{18, 16, Side::Periodic, Side::Periodic, 16, Side::Periodic},
+                               VelocitySet::D3Q19,
+                               {1, {9.25, 8.5, 8.0}, 5.2, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}}};
 
 // A force drives the fluid past a body at rest. Where the body covers a cell whole nothing moves,
 // and there is no pressure; outside both are those of the populations.
 TEST(ShownFluid, BodyAtRestHasNoVelocityAndNoPressure) {
   for (const Box& box : kBoxes)
-    for (const std::string& term : known_solid_terms()) {
+    for (const SolidTerm term : choices<SolidTerm>()) {
       KernelChoice kernel = choice(term);
       kernel.lattice = box.lattice;
       Fluid fluid(box.domain, kernel);
@@ -98,7 +99,7 @@ TEST(ShownFluid, BodyAtRestHasNoVelocityAndNoPressure) {
 
 TEST(ShownFluid, MovingBodyHasItsOwnVelocity) {
   for (const Box& box : kBoxes)
-    for (const std::string& term : known_solid_terms()) {
+    for (const SolidTerm term : choices<SolidTerm>()) {
       KernelChoice kernel = choice(term);
       kernel.lattice = box.lattice;
       Fluid fluid(box.domain, kernel);
@@ -125,7 +126,7 @@ TEST(ShownFluid, MovingBodyHasItsOwnVelocity) {
 // takes: of the momentum against the solid's and of the ghost.
 TEST(ShownFluid, PartlyCoveredCellsMixBothVelocities) {
   const Box& box = kBoxes[0];
-  for (const std::string term : {"noble_torczynski", "resistance"}) {
+  for (const SolidTerm term : {SolidTerm::NobleTorczynski, SolidTerm::Resistance}) {
     Fluid fluid(box.domain, choice(term));
     Body body = box.body;
     body.velocity = {0.02, 0.01};
@@ -142,7 +143,7 @@ TEST(ShownFluid, PartlyCoveredCellsMixBothVelocities) {
       const Fluid::Cell raw = fluid.cell(x, y);
       double share = eps * s / ((1.0 - eps) + s);
       Vec3 ghost = Vec3::Zero();
-      if (term == "resistance") {
+      if (term == SolidTerm::Resistance) {
         // Λ = 3/16: μ(0) = 2 - 16 Λ/3 = 1
         const auto taken = surface_exchange<D2Q9, Pack>(Pack(eps), Pack(s), Pack(1.0));
         share = 0.5 * taken.momentum[0];
@@ -164,7 +165,7 @@ TEST(ShownFluid, PartlyCoveredCellsMixBothVelocities) {
 
 TEST(ShownFluid, WallsRest) {
   const Domain domain{20, 12, Side::Periodic, Side::Periodic};
-  Fluid fluid(domain, choice("layered_holdych"));
+  Fluid fluid(domain, choice(SolidTerm::LayeredHoldych));
   fluid.add_wall({5, 0, 0}, {8, 6, 1});
   fluid.advance(100);
   const Shown shown(fluid);
@@ -180,7 +181,8 @@ TEST(ShownFluid, WallsRest) {
 // Torczynski pump mass from one side to the other for ever: four times the largest change of
 // density outside after 8000 steps.)
 TEST(ShownFluid, DensityInSolidsDoesNotDrift) {
-  for (const std::string term : {"layered_noble_torczynski", "layered_holdych", "noble_torczynski"})
+  for (const SolidTerm term :
+       {SolidTerm::LayeredNobleTorczynski, SolidTerm::LayeredHoldych, SolidTerm::NobleTorczynski})
     for (const auto collision : {CollisionOperator::CentralMoment, CollisionOperator::Trt}) {
       const Domain domain{40, 40};
       const double tau = collision == CollisionOperator::Trt ? 0.6 : 0.50003;
@@ -213,13 +215,14 @@ TEST(ShownFluid, DensityInSolidsDoesNotDrift) {
 // gives: the flux is the mean of what arrives, without half of the force. In this array of packed
 // bodies that half is a seventh of it. All faces of the box see the same flux.
 TEST(ShownFluid, MeanVelocityIsTheFluxByResistance) {
-  const std::vector<Box> arrays{
-      {{12, 12, Side::Periodic, Side::Periodic}, "D2Q9", {1, {6.13, 6.23}, 4.8, Vec3(), Spin()}},
-      {{12, 12, Side::Periodic, Side::Periodic, 12, Side::Periodic},
-       "D3Q19",
-       {1, {6.13, 6.23, 6.41}, 5.2, Vec3(), Spin()}}};
+  const std::vector<Box> arrays{{{12, 12, Side::Periodic, Side::Periodic},
+                                 VelocitySet::D2Q9,
+                                 {1, {6.13, 6.23}, 4.8, Vec3(), Spin()}},
+                                {{12, 12, Side::Periodic, Side::Periodic, 12, Side::Periodic},
+                                 VelocitySet::D3Q19,
+                                 {1, {6.13, 6.23, 6.41}, 5.2, Vec3(), Spin()}}};
   for (const Box& box : arrays) {
-    KernelChoice kernel = choice("resistance");
+    KernelChoice kernel = choice(SolidTerm::Resistance);
     kernel.lattice = box.lattice;
     kernel.parameters.tau = 1.5;
     kernel.parameters.magic = kResistanceMagic;
@@ -262,7 +265,7 @@ TEST(ShownFluid, SchemesOfTheirOwnShowTheBodyWhereItCoversCellsWhole) {
 // A point shows the density of the cells around it that have fluid.
 TEST(ShownFluid, PointsAtASurfaceAndInABody) {
   const Domain domain{20, 12, Side::Periodic, Side::Periodic};
-  Fluid fluid(domain, choice("holdych"));
+  Fluid fluid(domain, choice(SolidTerm::Holdych));
   fluid.add_wall({8, 0, 0}, {12, 12, 1});
   each_cell(domain, [&](std::size_t, int x, int y, int) {
     fluid.set_equilibrium(x, y, x < 8 || x >= 12 ? 1.01 : 1.5, {0.02, 0.0});
@@ -281,7 +284,7 @@ TEST(ShownFluid, PointsAtASurfaceAndInABody) {
 // Cells without fluid do not count as fast; what is not finite is found everywhere.
 TEST(ShownFluid, LargestSpeedIsThatOfTheFluid) {
   const Box& box = kBoxes[0];
-  Fluid fluid(box.domain, choice("holdych"));
+  Fluid fluid(box.domain, choice(SolidTerm::Holdych));
   fluid.place(std::vector{box.body});
   fluid.set_equilibrium(3, 4, 1.0, {0.05, 0.0});
   fluid.set_equilibrium(17, 15, 1.0, {0.3, 0.0});  // in the body

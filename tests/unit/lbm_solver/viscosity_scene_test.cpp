@@ -164,7 +164,7 @@ TEST(ViscosityOfAScene, WarnsOfOperatorsThatDoNotFitAYieldStress) {
   const auto warned = [&](const std::string& law, const std::string& collision,
                           const std::string& words) {
     Scene s = scene_with(folder, law);
-    s.numerics.collision = collision;
+    s.numerics.collision = from_name<CollisionOperator>(collision);
     return std::ranges::any_of(make_plan(s).warnings, [&](const std::string& w) {
       return w.find(words) != std::string::npos;
     });

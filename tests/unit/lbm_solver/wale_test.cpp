@@ -13,7 +13,7 @@ namespace {
 
 using namespace lbm;
 
-KernelChoice choice_of(const std::string& lattice, double smagorinsky = 0.1) {
+KernelChoice choice_of(VelocitySet lattice, double smagorinsky = 0.1) {
   return {.collision = CollisionOperator::CentralMoment,
           .parameters = {.tau = 0.6, .smagorinsky = smagorinsky},
           .lattice = lattice,
@@ -23,7 +23,7 @@ KernelChoice choice_of(const std::string& lattice, double smagorinsky = 0.1) {
 /// A fluid that moves as told, after its first step: the factors are those of its beginning.
 template <class Velocity>
 Fluid moving(const Domain& domain, const Velocity& u) {
-  Fluid fluid(domain, choice_of(domain.dimension() == 3 ? "D3Q19" : "D2Q9"));
+  Fluid fluid(domain, choice_of(domain.dimension() == 3 ? VelocitySet::D3Q19 : VelocitySet::D2Q9));
   for (int z = 0; z < domain.nz; ++z)
     for (int y = 0; y < domain.ny; ++y)
       for (int x = 0; x < domain.nx; ++x)
@@ -85,7 +85,7 @@ TEST(Wale, VanishesAsTheCubeOfTheDistanceFromAWall) {
 
 // Across a plane channel every gradient is a shear: the parabola stays as it is without the model.
 TEST(Wale, LeavesALaminarChannelAlone) {
-  KernelChoice choice = choice_of("D2Q9", 0.3);
+  KernelChoice choice = choice_of(VelocitySet::D2Q9, 0.3);
   choice.force = true;
   choice.parameters.force_x = 1e-5;
   Fluid with({8, 16, Side::Periodic, Side::Wall}, choice);
@@ -102,7 +102,7 @@ TEST(Wale, GoesOnToTheBit) {
                        std::sin(at.x()) + std::cos(at.y()));
   };
   const Domain domain{12, 10, Side::Periodic, Side::Wall, 8, Side::Periodic};
-  Fluid first = moving(domain, whirls), second(domain, choice_of("D3Q19"));
+  Fluid first = moving(domain, whirls), second(domain, choice_of(VelocitySet::D3Q19));
   first.advance(12);
   second.load(first.save());
   for (Fluid* fluid : {&first, &second}) fluid->advance(10);

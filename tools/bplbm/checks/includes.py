@@ -10,12 +10,12 @@ INCLUDE = re.compile(r'^\s*#include\s+[<"]([^>"]+)[>"]', re.M)
 
 # Room -> rooms whose headers it may use besides its own and protocol's messages and errors.
 LBM = {
-    "base": set(), "lattice": set(), "field": {"base", "lattice"},
+    "base": set(), "lattice": {"base"}, "field": {"base", "lattice"},
     "collision": {"base", "lattice"},
     "viscosity": {"base", "lattice", "collision"},
     "boundary": {"base", "lattice", "field", "collision"},
     "immersed": {"base", "lattice", "field", "collision"},
-    "io": {"base", "field", "viscosity"},
+    "io": {"base", "lattice", "field", "viscosity"},
     "solver": {"base", "lattice", "field", "collision", "viscosity", "boundary", "immersed"},
     "coupling": {"base", "lattice", "field", "collision", "viscosity", "boundary", "immersed", "solver", "io"},
     "main.cpp": {"base", "lattice", "field", "collision", "immersed", "solver", "io", "coupling"},
