@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/support/coupled_job.h"
+#include "tests/support/script_parts.h"
 
 namespace {
 
@@ -149,24 +150,8 @@ endsolid floor
     std::ofstream(folder_.path() + "/scene.toml", std::ios::app) << text;
   }
   JobResult run(const std::string& walls, const std::string& move = "fix move all nve/sphere") {
-    std::string script = R"(atom_style granular
-atom_modify map array sort 0 0
-boundary ${boundary_x} ${boundary_y} ${boundary_z}
-newton off
-communicate single vel yes
-units si
-region domain block ${x_lo} ${x_hi} ${y_lo} ${y_hi} ${z_lo} ${z_hi} units box
-create_box 1 domain
-neighbor 0.0005 bin
-neigh_modify delay 0
-fix m1 all property/global youngsModulus peratomtype 5.e6
-fix m2 all property/global poissonsRatio peratomtype 0.45
-fix m3 all property/global coefficientRestitution peratomtypepair 1 0.3
-fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
-pair_style gran model hertz tangential history
-pair_coeff * *
-timestep ${solid_step}
-create_atoms 1 single 0.006 0.006 0.012 units box
+    std::string script = test::kSpheresHead + "create_box 1 domain\n" + test::kHertzContacts +
+                         R"(create_atoms 1 single 0.006 0.006 0.012 units box
 set type 1 diameter 0.003 density 2500
 )";
     script += walls + "\n" + move + R"(

@@ -14,6 +14,7 @@
 
 #include "protocol/wire/ball_union.h"
 #include "tests/support/clump_job.h"
+#include "tests/support/script_parts.h"
 
 namespace {
 
@@ -146,7 +147,7 @@ end_time = 0.03
 
 /// DISCS are made by disc_lines; fix rigid, which takes discs for spheres and counts what two share
 /// twice, has mass, centre and inertia from a file.
-constexpr const char* kFlatScript = R"(dimension 2
+const std::string kFlatScript = R"(dimension 2
 units si
 atom_style granular
 atom_modify map array sort 0 0
@@ -157,18 +158,8 @@ region box block ${x_lo} ${x_hi} ${y_lo} ${y_hi} ${z_lo} ${z_hi} units box
 create_box 1 box
 neighbor 0.0005 bin
 neigh_modify delay 0
-fix kn all property/global kn peratomtypepair 1 1e3
-fix kt all property/global kt peratomtypepair 1 1e3
-fix gn all property/global gamman peratomtypepair 1 1
-fix gt all property/global gammat peratomtypepair 1 1
-fix mu all property/global coefficientFriction peratomtypepair 1 0.3
-pair_style gran model hooke/stiffness tangential history
-pair_coeff * *
-fix x all wall/gran model hooke/stiffness tangential history primitive type 1 xplane ${x_lo}
-fix X all wall/gran model hooke/stiffness tangential history primitive type 1 xplane ${x_hi}
-fix y all wall/gran model hooke/stiffness tangential history primitive type 1 yplane ${y_lo}
-fix Y all wall/gran model hooke/stiffness tangential history primitive type 1 yplane ${y_hi}
-timestep ${solid_step}
+)" + test::linear_contacts("1e3", "1", "0.3") +
+                                test::box_walls(test::kLinear, "xy") + R"(timestep ${solid_step}
 DISCS
 neigh_modify exclude group all all
 fix weight all gravity ${gravity} vector 0.0 -1.0 0.0

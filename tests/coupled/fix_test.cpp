@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/support/coupled_job.h"
+#include "tests/support/script_parts.h"
 
 namespace {
 
@@ -37,14 +38,8 @@ create_atoms 1 single 0.49 0.3 0.0 units box
 create_atoms 1 single 0.97 0.7 0.0 units box
 set type 1 diameter 0.1 density 254.64790894703253
 set atom 1*2 vx 0.5
-fix kn all property/global kn peratomtypepair 1 1e5
-fix kt all property/global kt peratomtypepair 1 1e5
-fix gn all property/global gamman peratomtypepair 1 1
-fix gt all property/global gammat peratomtypepair 1 1
-fix mu all property/global coefficientFriction peratomtypepair 1 0.3
-pair_style gran model hooke/stiffness tangential history
-pair_coeff * *
-timestep 1e-3
+)" + test::linear_contacts("1e5", "1", "0.3") +
+         R"(timestep 1e-3
 fix move all nve/sphere
 )" + fix +
          "\nfix flat all enforce2d\n" + run + "\n";

@@ -9,6 +9,7 @@
 
 #include "lbm_solver/io/scene_reader.h"
 #include "tests/support/coupled_job.h"
+#include "tests/support/script_parts.h"
 
 namespace {
 
@@ -50,18 +51,9 @@ probe_every = 0.01
 include ${scene_folder}/common/box.liggghts
 if "${restart} == 0" then "create_atoms 1 single ${particle1_x} ${particle1_y} 0.0 units box"
 if "${restart} == 0" then "set type 1 diameter ${diameter_max} density ${density_max}"
-fix kn all property/global kn peratomtypepair 1 ${contact_stiffness}
-fix kt all property/global kt peratomtypepair 1 ${contact_stiffness}
-fix gn all property/global gamman peratomtypepair 1 10
-fix gt all property/global gammat peratomtypepair 1 10
-fix mu all property/global coefficientFriction peratomtypepair 1 0.3
-pair_style gran model hooke/stiffness tangential history
-pair_coeff * *
-fix low all wall/gran model hooke/stiffness tangential history primitive type 1 yplane ${y_lo}
-fix high all wall/gran model hooke/stiffness tangential history primitive type 1 yplane ${y_hi}
-fix left all wall/gran model hooke/stiffness tangential history primitive type 1 xplane ${x_lo}
-fix right all wall/gran model hooke/stiffness tangential history primitive type 1 xplane ${x_hi}
-fix block all mesh/surface file ${mesh1} type 1
+)" + test::linear_contacts("${contact_stiffness}", "10", "0.3") +
+                                     test::box_walls(test::kLinear, "xy") +
+                                     R"(fix block all mesh/surface file ${mesh1} type 1
 fix blocks all wall/gran model hooke/stiffness tangential history mesh n_meshes 1 meshes block
 fix turn all move/mesh mesh block ${mesh1_motion}
 fix move all nve/sphere
@@ -191,18 +183,12 @@ end_time = 0.6
 probe_every = 0.05
 )";
 
-constexpr const char* kRollingScript = R"(
+const std::string kRollingScript = R"(
 include ${scene_folder}/common/box.liggghts
 create_atoms 1 single ${particle1_x} ${particle1_y} 0.0 units box
 set type 1 diameter ${diameter_max} density ${density_max}
-fix kn all property/global kn peratomtypepair 1 ${contact_stiffness}
-fix kt all property/global kt peratomtypepair 1 ${contact_stiffness}
-fix gn all property/global gamman peratomtypepair 1 400
-fix gt all property/global gammat peratomtypepair 1 400
-fix mu all property/global coefficientFriction peratomtypepair 1 0.5
-pair_style gran model hooke/stiffness tangential history
-pair_coeff * *
-WALL
+)" + test::linear_contacts("${contact_stiffness}", "400", "0.5") +
+                                   R"(WALL
 fix move all nve/sphere
 fix weight all gravity ${gravity} vector ${gravity_x} ${gravity_y} 0.0
 timestep ${solid_step}

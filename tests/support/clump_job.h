@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/support/coupled_job.h"
+#include "tests/support/script_parts.h"
 
 namespace test {
 
@@ -37,31 +38,10 @@ probe_every = 0.005
 end_time = 0.05
 )";
 
-inline constexpr const char* kClumpScript = R"(atom_style granular
-atom_modify map array sort 0 0
-boundary ${boundary_x} ${boundary_y} ${boundary_z}
-newton off
-communicate single vel yes
-processors PROCESSORS
-units si
-region domain block ${x_lo} ${x_hi} ${y_lo} ${y_hi} ${z_lo} ${z_hi} units box
+inline const std::string kClumpScript = kSpheresHead + R"(processors PROCESSORS
 if "${restart} == 1" then "read_restart ${restart_file}" else "create_box 1 domain"
-neighbor 0.0005 bin
-neigh_modify delay 0
-fix m1 all property/global youngsModulus peratomtype 5.e6
-fix m2 all property/global poissonsRatio peratomtype 0.45
-fix m3 all property/global coefficientRestitution peratomtypepair 1 0.3
-fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
-pair_style gran model hertz tangential history
-pair_coeff * *
-timestep ${solid_step}
-fix x all wall/gran model hertz tangential history primitive type 1 xplane ${x_lo}
-fix X all wall/gran model hertz tangential history primitive type 1 xplane ${x_hi}
-fix y all wall/gran model hertz tangential history primitive type 1 yplane ${y_lo}
-fix Y all wall/gran model hertz tangential history primitive type 1 yplane ${y_hi}
-fix z all wall/gran model hertz tangential history primitive type 1 zplane ${z_lo}
-fix Z all wall/gran model hertz tangential history primitive type 1 zplane ${z_hi}
-BODIES
+)" + kHertzContacts + box_walls(kHertz, "xyz") +
+                                        R"(BODIES
 if "${restart} == 0" then "run 1"
 fix weight all gravity ${gravity} vector 0.0 0.0 -1.0
 fix fluid all lbm/couple every ${substeps}

@@ -12,27 +12,14 @@
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "tests/support/job.h"
+#include "tests/unit/lbm_solver/scene_files.h"
 
 namespace {
 
 using namespace lbm;
 using test::read_file;
 
-constexpr const char* kScene = R"(
-[box]
-size = [0.1, 0.08]
-sides_x = "periodic"
-sides_y = "periodic"
-[fluid]
-density = 1000.0
-kinematic_viscosity = 0.02
-velocity_scale = 0.1
-[numerics]
-cell = 0.01
-time_step = 0.001
-[run]
-end_time = 10.0
-)";
+const std::string kScene = test::small_fluid("10.0");
 
 /// A fluid alone at rest, with its observers, in a folder of its own.
 class ObserversTest : public testing::Test {

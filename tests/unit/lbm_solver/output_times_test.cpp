@@ -12,6 +12,7 @@
 #include "lbm_solver/io/scene_reader.h"
 #include "protocol/transport/hdf5_file.h"
 #include "tests/support/job.h"
+#include "tests/unit/lbm_solver/scene_files.h"
 
 namespace {
 
@@ -66,26 +67,11 @@ TEST(OutputTimes, FirstStateOfATime) {
 
 /// A fluid of 10 × 8 cells that a force sets in motion from rest, with u = g t.
 constexpr double kGravity = 0.02;  // m/s²
-const std::string kScene = R"(
-[box]
-size = [0.1, 0.08]
-sides_x = "periodic"
-sides_y = "periodic"
-[fluid]
-density = 1000.0
-kinematic_viscosity = 0.02
-body_force = [0.02, 0.0]
-velocity_scale = 0.1
-[numerics]
-cell = 0.01
-time_step = 0.001
-[run]
-end_time = 1.0
-[output]
+const std::string kScene = test::small_fluid("1.0", "body_force = [0.02, 0.0]\n", R"([output]
 fields_every = 0.1
 probe_every = 0.1
 points = [[0.033, 0.041]]
-)";
+)");
 
 /// Runs a scene alone. @return its table `name`, a line of numbers each, without the columns
 std::vector<std::vector<double>> run(const test::TemporaryFolder& folder, const std::string& text,

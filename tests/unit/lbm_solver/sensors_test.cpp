@@ -112,16 +112,9 @@ TEST(SideLoads, OfAMovingPlateAreThoseOfCouetteFlow) {
   EXPECT_NEAR(SideLoads(fluid, SideName::Top).force(fluid).x(), -shear, 1e-9 * shear);
 }
 
-/// A box of 4 × 3 cells in a scene that averages from 0.25 s on.
-class Average : public testing::Test {
- protected:
-  Average()
-      : scene_(read_scene({folder_.write("scene.toml", R"(
-[box]
-size = [0.04, 0.03]
-sides_x = "periodic"
-sides_y = "periodic"
-[fluid]
+/// A scene with a box of 4 × 3 cells. @param sides  more keys of [box]
+std::string small_box(const std::string& sides, const std::string& rest) {
+  return "[box]\nsize = [0.04, 0.03]\n" + sides + R"([fluid]
 density = 1000.0
 kinematic_viscosity = 1e-4
 velocity_scale = 0.01
@@ -129,9 +122,16 @@ velocity_scale = 0.01
 cell = 0.01
 [run]
 end_time = 1.0
-[average]
-from = 0.25
-)")})),
+)" + rest;
+}
+
+/// That box, periodic, in a scene that averages from 0.25 s on.
+class Average : public testing::Test {
+ protected:
+  Average()
+      : scene_(read_scene({folder_.write(
+            "scene.toml", small_box("sides_x = \"periodic\"\nsides_y = \"periodic\"\n",
+                                    "[average]\nfrom = 0.25\n"))})),
         plan_(make_plan(scene_)),
         ranks_(plan_.domain),
         fluid_(make_fluid(scene_, plan_, ranks_)) {}
@@ -208,18 +208,7 @@ TEST_F(Average, BeginsAtItsTime) {
 /// A scene with one sensor.
 std::string refusal(const std::string& sensor) {
   const test::TemporaryFolder folder;
-  const std::string file = folder.write("scene.toml", R"(
-[box]
-size = [0.04, 0.03]
-[fluid]
-density = 1000.0
-kinematic_viscosity = 1e-4
-velocity_scale = 0.01
-[numerics]
-cell = 0.01
-[run]
-end_time = 1.0
-)" + sensor);
+  const std::string file = folder.write("scene.toml", small_box("", sensor));
   try {
     make_plan(read_scene({file}));
   } catch (const InputError& error) {
