@@ -147,7 +147,7 @@ void Observers::at_state(std::int64_t state, Fluid& fluid, const Particles* part
 
 /// Where the viscosity depends on the shear rate: how much of the fluid lies beyond its bounds.
 void Observers::report_viscosity(std::int64_t state, const Fluid& fluid) {
-  viscosity_ = viscosity_use(fluid, *plan_.kernel.parameters.viscosity_table);
+  viscosity_ = viscosity_use(fluid, plan_.kernel.parameters);
   log_.say(
       state, "viscosity",
       "{:.3g} % of the fluid is at the bound of low shear rates, {:.3g} % at that of high ones; "

@@ -2,6 +2,7 @@
 #include "lbm_solver/solver/viscosity_use.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,13 +11,13 @@
 namespace lbm {
 namespace {
 
-/// What the table wants of a cell: 2 Q_ab Q_ab / rho², without Q's trace or with it.
-enum class Trace { Left, Taken };
-double stress_of(const Fluid& fluid, int x, int y, int z, Trace with = Trace::Taken) {
+/// Second moments of a cell's non-equilibrium populations, as the kernel has them, over rho.
+using Moments2 = std::array<std::array<double, 3>, 3>;
+Moments2 stress_of(const Fluid& fluid, int x, int y, int z) {
   const Lattice& l = fluid.lattice();
   const auto [rho, u] = fluid.cell(x, y, z);
   const Vec3 force = fluid.body_force();
-  double q[3][3] = {}, trace = 0.0, squares = 0.0;
+  Moments2 q{};
   for (int i = 1; i < l.Q; ++i) {
     const double population = fluid.arriving(i, x, y, z);
     for (int a = 0; a < l.D; ++a)
@@ -24,29 +25,57 @@ double stress_of(const Fluid& fluid, int x, int y, int z, Trace with = Trace::Ta
   }
   for (int a = 0; a < l.D; ++a) {
     q[a][a] -= (rho - 1.0) / 3.0;
-    for (int b = 0; b < l.D; ++b)
+    for (int b = 0; b < l.D; ++b) {
       q[a][b] += 0.5 * (force[a] * u[b] + u[a] * force[b]) - rho * u[a] * u[b];
-    trace += q[a][a];
+      q[a][b] /= rho;
+    }
   }
-  for (int a = 0; a < l.D; ++a) {
-    if (with == Trace::Taken) q[a][a] -= trace / l.D;
-    for (int b = 0; b < l.D; ++b) squares += q[a][b] * q[a][b];
-  }
-  return 2.0 * squares / (rho * rho);
+  return q;
 }
 
-/// As LocalViscosity finds it, of a cell that is open in part.
+/// Q without its trace.
+void leave_trace(Moments2& q, int dimension) {
+  const double mean = (q[0][0] + q[1][1] + q[2][2]) / dimension;
+  for (int a = 0; a < dimension; ++a) q[a][a] -= mean;
+}
+
+double squares(const Moments2& q) {
+  double sum = 0.0;
+  for (const auto& row : q)
+    for (const double part : row) sum += 2.0 * part * part;
+  return sum;
+}
+
+/// What a table says of a cell that is open in part, as LocalViscosity does.
+struct LookUp {
+  const RelaxationTable* table;
+  double stress;  ///< of its fluid: 2 Q_ab Q_ab / rho²
+};
+LookUp look_up(const Fluid& fluid, const CollisionParameters& p, double open, int x, int y, int z) {
+  Moments2 q = stress_of(fluid, x, y, z);
+  leave_trace(q, fluid.lattice().D);
+  if (open >= 1.0) return {p.viscosity_table.get(), squares(q)};
+  const auto square = [&](int a, int b) { return q[a][b] * q[a][b]; };
+  return {p.covered_table ? p.covered_table.get() : p.viscosity_table.get(),
+          LocalViscosity::fluid_squares(square(0, 0) + square(1, 1) + square(2, 2), square(0, 1),
+                                        square(0, 2), square(1, 2), open)};
+}
+
 double tau_of(const Fluid& fluid, const CollisionParameters& p, double open, int x, int y, int z) {
   if (p.viscosity_table) {
-    const bool covered = open < 1.0;
-    const double part = covered ? LocalViscosity::stress_part(open) : 1.0;
-    const auto& table = covered && p.covered_table ? p.covered_table : p.viscosity_table;
-    return 1.0 / (*table)(stress_of(fluid, x, y, z) / (part * part));
+    const auto [table, stress] = look_up(fluid, p, open, x, y, z);
+    return 1.0 / (*table)(stress);
   }
   const double factor = fluid.eddies() ? fluid.eddies()->row(y, z)[x] : 1.0;
   const double eddies = 18.0 * p.smagorinsky * p.smagorinsky * factor;
-  const double stress = std::sqrt(stress_of(fluid, x, y, z, Trace::Left));
+  const double stress = std::sqrt(squares(stress_of(fluid, x, y, z)));
   return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + eddies * stress));
+}
+
+/// Part of a cell that is fluid.
+double open_part(const Fluid& fluid, int x, int y, int z) {
+  const double solid = fluid.cover() ? fluid.cover()->solid_fraction(x, y, z) : 0.0;
+  return solid >= kWhole ? 0.0 : 1.0 - solid;
 }
 
 }  // namespace
@@ -54,32 +83,34 @@ double tau_of(const Fluid& fluid, const CollisionParameters& p, double open, int
 void row_viscosity(const Fluid& fluid, const CollisionParameters& parameters, int y, int z,
                    std::span<double> nu) {
   for (int x = 0; x < fluid.cells().size[0]; ++x) {
-    const double solid = fluid.cover() ? fluid.cover()->solid_fraction(x, y, z) : 0.0;
-    nu[x] = solid >= kWhole ? std::numeric_limits<double>::quiet_NaN()
-                            : (tau_of(fluid, parameters, 1.0 - solid, x, y, z) - 0.5) / 3.0;
+    const double open = open_part(fluid, x, y, z);
+    nu[x] = open == 0.0 ? std::numeric_limits<double>::quiet_NaN()
+                        : (tau_of(fluid, parameters, open, x, y, z) - 0.5) / 3.0;
   }
 }
 
-ViscosityUse viscosity_use(const Fluid& fluid, const RelaxationTable& table) {
+ViscosityUse viscosity_use(const Fluid& fluid, const CollisionParameters& parameters) {
+  constexpr double sliver = 0.5;  // less of a cell says little of the largest shear rate
   const Cell3& n = fluid.cells().size;
-  double sums[4] = {0.0, 0.0, 0.0, 0.0}, largest = 0.0;  // cells, at either bound, viscosities
+  double sums[4] = {0.0, 0.0, 0.0, 0.0}, largest = 0.0;  // fluid, at either bound, viscosities
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x) {
-        if (fluid.cover() && fluid.cover()->solid_fraction(x, y, z) >= kWhole) continue;
-        const double stress = stress_of(fluid, x, y, z);
-        sums[0] += 1.0;
-        sums[1] += stress <= table.lowest();
-        sums[2] += stress >= table.highest();
-        sums[3] += (1.0 / table(stress) - 0.5) / 3.0;
-        largest = std::max(largest, table.shear_rate(stress));
+        const double open = open_part(fluid, x, y, z);
+        if (open == 0.0) continue;
+        const auto [table, stress] = look_up(fluid, parameters, open, x, y, z);
+        sums[0] += open;
+        if (stress <= table->lowest()) sums[1] += open;
+        if (stress >= table->highest()) sums[2] += open;
+        sums[3] += open * (1.0 / (*table)(stress)-0.5) / 3.0;
+        if (open >= sliver) largest = std::max(largest, table->shear_rate(stress));
       }
   fluid.ranks().sum(sums);
-  const double cells = std::max(1.0, sums[0]);
-  return {.at_rest_bound = sums[1] / cells,
-          .at_shear_bound = sums[2] / cells,
+  const double all = sums[0] > 0.0 ? sums[0] : 1.0;
+  return {.at_rest_bound = sums[1] / all,
+          .at_shear_bound = sums[2] / all,
           .largest_shear = fluid.ranks().max(largest),
-          .mean_viscosity = sums[3] / cells};
+          .mean_viscosity = sums[3] / all};
 }
 
 }  // namespace lbm

@@ -3,22 +3,23 @@
 
 #include <span>
 
+#include "lbm_solver/collision/parameters.h"
 #include "lbm_solver/solver/fluid.h"
-#include "lbm_solver/viscosity/relaxation_table.h"
 
 namespace lbm {
 
-/// What the flow makes of a viscosity that depends on the shear rate, over all cells of the box
-/// that are not solid whole.
+/// What the flow makes of a viscosity that depends on the shear rate, over all fluid of the box: a
+/// cell that solids cover in part counts with the part of it that is fluid.
 struct ViscosityUse {
-  double at_rest_bound = 0.0;   ///< share of cells slower than where the law begins
-  double at_shear_bound = 0.0;  ///< share of cells faster than where it ends
-  double largest_shear = 0.0;   ///< a step
+  double at_rest_bound = 0.0;   ///< share of the fluid slower than where the law begins
+  double at_shear_bound = 0.0;  ///< share of the fluid faster than where it ends
+  double largest_shear = 0.0;   ///< a step; of cells of which at least half is fluid
   double mean_viscosity = 0.0;  ///< lattice units
 };
 
 /// Of the present state. Collective.
-ViscosityUse viscosity_use(const Fluid& fluid, const RelaxationTable& table);
+/// @param parameters  of the kernel, with a table of the viscosity
+ViscosityUse viscosity_use(const Fluid& fluid, const CollisionParameters& parameters);
 
 /// Kinematic viscosity with which the cells of a row collide, an eddy viscosity with it, lattice
 /// units; not a number where a solid covers a cell whole.

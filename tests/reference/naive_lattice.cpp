@@ -184,10 +184,17 @@ double NaiveLattice::tau(const Cell& f, double eddies, double part) const {
   if (p.viscosity_table) {
     q.topLeftCorner(l_.D, l_.D).diagonal().array() -= q.trace() / l_.D;
     if (part == 1.0) return 1.0 / (*p.viscosity_table)(2.0 * q.squaredNorm() / (m.rho * m.rho));
-    const double corner = part < 0.5 ? 1.0 - 0.5 * std::pow(1.0 - 2.0 * part, 2) : 1.0;
-    const double rho = m.rho * std::max(0.01, part * corner);
+    const double all = q.squaredNorm(), down = q.diagonal().squaredNorm() / all;
+    const double xy = q(0, 1) * q(0, 1), xz = q(0, 2) * q(0, 2), yz = q(1, 2) * q(1, 2);
+    const double along = 16.0 * (xy * xz + xy * yz + xz * yz) / (all * all);
+    const double corner = part < 0.5 ? std::pow(1.0 - 2.0 * part, 2) : 0.0;
+    const double diagonal = part * (1.0 - std::pow(1.0 - part, 4));
+    const double others =
+        part * (1.0 + 0.5 * along * part * (1.0 - part) - 0.7 * (along + down) * corner);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) q(a, b) /= m.rho * std::max(0.01, a == b ? diagonal : others);
     const auto& table = p.covered_table ? *p.covered_table : *p.viscosity_table;
-    return 1.0 / table(2.0 * q.squaredNorm() / (rho * rho));
+    return 1.0 / table(2.0 * q.squaredNorm());
   }
   return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + 18.0 * p.smagorinsky * p.smagorinsky * eddies *
                                                       std::sqrt(2.0) * q.norm() / m.rho));
