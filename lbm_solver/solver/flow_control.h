@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "lbm_solver/base/record.h"
+#include "lbm_solver/base/vec3.h"
 #include "lbm_solver/boundary/in_time.h"
 
 namespace lbm {
@@ -24,6 +25,9 @@ class FlowControl {
   /// @param cells          of the box along the axis: T is the time in which sound crosses it
   ///                       about one and a half times, Δ a tenth of that
   FlowControl(int axis, double mean_velocity, const InTime& in_time, int cells);
+
+  /// Δ [steps]. @param cells  of the box along the axis
+  static std::int64_t look_every(int cells);
 
   int axis() const { return axis_; }
   double force() const { return force_; }
@@ -48,6 +52,10 @@ class FlowControl {
   double time_;
   double force_ = 0.0, mean_ = 0.0;
 };
+
+/// What the momentum of a cell is rounded to, so that momenta may be added up in any order: as fine
+/// as 62 bits hold for a box of cells with a velocity of 1.
+double momentum_grain(const Cell3& cells);
 
 /// Mean velocity of the box along a periodic axis: what crosses the planes between its layers
 /// (PlaneFlow), over all of them. The same on any number of ranks and threads. Collective.
