@@ -4,9 +4,10 @@ solution, with which docs/viscosity.md and tests/physics/viscosity_test.cpp comp
 Among fields without divergence creeping flow has the least potential ∫∫ η dγ̇²/2 dV. The stream function is a sum of
 Legendre modes (odd ones: fore and aft are alike) with quartic splines of ln r; each step solves the linear problem with the
 viscosity of the last. The drag is dissipation over velocity. In a Newtonian fluid it is 6πKRU λ-corrected to five digits
-[Happel and Brenner 1965]: 2.1049 at four radii, 1.0023 at a thousand.
+[Happel and Brenner 1965]: 2.1049 at four radii, 1.0023 at a thousand. Far from the sphere the velocity falls as r^(1-2/n):
+with n = 1.5 walls at 10³, 10⁵ and 10⁷ radii make the drag 0.3221, 0.2751, 0.2664, so thickening fluids are computed at 10⁹.
 
-Usage: sphere_in_gel.py (needs numpy and scipy; five minutes)
+Usage: sphere_in_gel.py (needs numpy and scipy; ten minutes)
 """
 
 import numpy as np
@@ -97,9 +98,10 @@ def main():
         for n in (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3):
             drag, c = sphere.drag(lambda rate, n=n: np.maximum(rate, 1e-12) ** (n - 1), c)
             print(f"outer radius {outer:g}, n {n:g}: F/(3π K D² (U/D)ⁿ) = {drag / (12 * np.pi * 2**-n):.4f}", flush=True)
-        c = None
-        for n in (1.2, 1.5):
-            drag, c = sphere.drag(lambda rate, n=n: np.maximum(rate, 1e-12) ** (n - 1), c)
+    for outer, elements, modes, angles in ((4.0, 20, 8, 26), (1e9, 70, 6, 20)):
+        sphere, c = Sphere(outer, elements, modes, angles), None
+        for n in (1.0, 1.2, 1.35, 1.5):
+            drag, c = sphere.drag(lambda rate, n=n: np.maximum(rate, 1e-300) ** (n - 1), c)
             print(f"outer radius {outer:g}, n {n:g}: F/(3π K D² (U/D)ⁿ) = {drag / (12 * np.pi * 2**-n):.4f}", flush=True)
     sphere, c = Sphere(4.0, 30, 12, 32, 2.0), None
     for bingham in (30.0, 300.0, 1600.0):  # σ_y D/(K U); bi-viscosity, thirty times the viscosity at U/D
