@@ -38,6 +38,13 @@ ViscosityScene read_viscosity(TableReader t) {
   const ViscosityParts parts = parts_of(v.model);
   if (parts.consistency) v.consistency = t.number("consistency", Bounds::positive(), "Pa sⁿ");
   if (parts.index) v.index = t.number("index", {0.1, 2.0}, "");
+  if (v.model == ViscosityModel::Carreau && v.index >= 1.0)
+    t.fail("index",
+           fmt::format("= {:.6g} does not thin: Carreau's law goes from nu_max at rest to nu_min, "
+                       "which n < 1 does",
+                       v.index),
+           v.index == 1.0 ? "take n < 1, or model = \"newtonian\""
+                          : "take n < 1; what thickens is a power_law with n > 1");
   if (parts.time_constant) v.time_constant = t.number("time_constant", Bounds::positive(), "s");
   if (parts.yield_stress) {
     v.yield_stress = t.number("yield_stress", Bounds::positive(), "Pa");

@@ -47,7 +47,7 @@ run.end_time = 1
 )",
     R"(
 box.size = [1, 1]
-fluid = {density = 1, velocity_scale = 1, viscosity = {model = "carreau", index = 1, time_constant = 1, nu_min = 1, nu_max = 2}}
+fluid = {density = 1, velocity_scale = 1, viscosity = {model = "carreau", index = 0.5, time_constant = 1, nu_min = 1, nu_max = 2}}
 numerics.cell = 0.1
 run.end_time = 1
 )",
@@ -108,7 +108,7 @@ constexpr Meaning kMeanings[] = {
     {"fluid.viscosity.regularisation", "What replaces the law below the yield stress."},
     {"fluid.viscosity.time_constant", "λ of Carreau's law.", "required"},
     {"fluid.viscosity.nu_min", "Lower bound of the kinematic viscosity.",
-     "typical viscosity / 100"},
+     "typical viscosity / 100, of a bingham fluid at most K/ρ"},
     {"fluid.viscosity.nu_max", "Upper bound of the kinematic viscosity.",
      "typical viscosity × 100"},
     {"fluid.viscosity.shear_rate",

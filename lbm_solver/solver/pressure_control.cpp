@@ -21,10 +21,14 @@ PressureControl::PressureControl(std::size_t patch, double flow, const InTime& i
       target_(flow),
       in_time_(in_time),
       area_(area),
-      time_(kCrossings * length / kSound),
+      time_(time(length)),
       start_(drho / 3.0),
       integral_(start_),
       pressure_(start_) {}
+
+double PressureControl::time(int length) {
+  return kCrossings * length / kSound;
+}
 
 void PressureControl::adjust(std::int64_t step, double mass_in) {
   const double goal = wanted(step) / area_;

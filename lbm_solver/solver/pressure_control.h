@@ -30,6 +30,9 @@ class PressureControl {
   PressureControl(std::size_t patch, double flow, const InTime& in_time, double area, int length,
                   double drho);
 
+  /// T, in which it follows [steps]. @param length  of the box along the opening's axis
+  static double time(int length);
+
   std::size_t patch() const { return patch_; }
   /// Density deviation that is to be held on the side.
   double drho() const { return 3.0 * pressure_; }

@@ -13,6 +13,7 @@
 #include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/coupled_check.h"
+#include "lbm_solver/solver/drive_check.h"
 #include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/motion_check.h"
 #include "lbm_solver/solver/place_check.h"
@@ -307,6 +308,7 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_speed(s, plan);
   check_balance(s, plan);
   check_drives(s, plan);
+  check_driven(s, plan);
   check_sizes(s, plan);
   check_frequencies(s, plan);
   check_motions(s, plan);

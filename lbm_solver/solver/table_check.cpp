@@ -12,7 +12,9 @@
 namespace lbm {
 namespace {
 
-constexpr double kLittle = 0.5;  // of a boundary that a profile covers
+constexpr double kLittle = 0.5;        // of a boundary that a profile covers
+constexpr double kMuch = 10.0;         // of a boundary's length that a profile has
+constexpr double kStepsATable = 20.0;  // that repeats
 
 /// A plateau at an end of a table says that the value shall stay, a 0 that nothing shall be there.
 void check_times(const Scene& s, const TimeTableScene& table, const std::string& key, Plan& plan) {
@@ -32,6 +34,38 @@ void check_times(const Scene& s, const TimeTableScene& table, const std::string&
                     key, times.back(), s.end_time, factors.back()));
 }
 
+/// A table whose times the step does not resolve.
+void check_steps(const Scene& s, const TimeTableScene& table, const std::string& key, Plan& plan) {
+  if (table.times.empty()) return;
+  const double span = table.times.back() - table.times.front(), steps = span / plan.units.dt;
+  if (steps >= (table.repeats ? kStepsATable : 1.0)) return;
+  const std::string text =
+      fmt::format("{} goes from {:.4g} to {:.4g} s, {:.2g} fluid steps of {:.3g} s", key,
+                  table.times.front(), table.times.back(), steps, plan.units.dt);
+  const char* const remedy = "are its times in seconds? take a smaller numerics.time_step if so";
+  if (table.repeats)
+    throw InputError(
+        fmt::format("{}: {}, of which a period needs at least {:.0f}", s.file, text, kStepsATable),
+        remedy);
+  plan.warnings.push_back(text + ": what it says in between is lost; " + remedy);
+}
+
+void check_both(const TimeTableScene& table, double frequency, const std::string& key, Plan& plan) {
+  if (frequency > 0.0 && !table.times.empty())
+    plan.warnings.push_back(
+        fmt::format("{} stands beside a frequency: the value is multiplied by "
+                    "both, by the table and by cos(2πft); leave one of them "
+                    "out, if that is not meant",
+                    key));
+}
+
+void check_table(const Scene& s, const TimeTableScene& table, double frequency,
+                 const std::string& key, Plan& plan) {
+  check_times(s, table, key, plan);
+  check_steps(s, table, key, plan);
+  check_both(table, frequency, key, plan);
+}
+
 void check_profile(const Scene& s, const BoundaryScene& b, std::size_t number, Plan& plan) {
   for (int k = 0; k < s.box.dimension - 1; ++k) {
     const std::vector<double>& places = b.profile.places[k];
@@ -46,6 +80,11 @@ void check_profile(const Scene& s, const BoundaryScene& b, std::size_t number, P
     if (shared <= 0.0)
       throw InputError(s.file + ": boundary.profile_table", what,
                        "its places are in metres, counted as the box's are");
+    if (places.back() - places.front() > kMuch * (side.hi - side.lo))
+      plan.warnings.push_back(
+          fmt::format("boundary.profile_table {}: of the table only {:.2g} % lies on it; its "
+                      "places are in metres, are they in mm?",
+                      what, 100.0 * shared / (places.back() - places.front())));
     if (shared < kLittle * (side.hi - side.lo))
       plan.warnings.push_back("boundary.profile_table " + what +
                               ": beyond its places the last factor stays");
@@ -56,10 +95,12 @@ void check_profile(const Scene& s, const BoundaryScene& b, std::size_t number, P
 
 void check_tables(const Scene& s, Plan& plan) {
   for (std::size_t i = 0; i < s.boundaries.size(); ++i) {
-    check_times(s, s.boundaries[i].table, fmt::format("the table of boundary {}", i + 1), plan);
-    check_profile(s, s.boundaries[i], i + 1, plan);
+    const BoundaryScene& b = s.boundaries[i];
+    check_table(s, b.table, b.frequency, fmt::format("the table of boundary {}", i + 1), plan);
+    check_profile(s, b, i + 1, plan);
   }
-  check_times(s, s.fluid.body_force_table, "fluid.body_force_table", plan);
+  check_table(s, s.fluid.body_force_table, s.fluid.body_force_frequency, "fluid.body_force_table",
+              plan);
 }
 
 }  // namespace lbm

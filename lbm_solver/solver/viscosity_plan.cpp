@@ -19,6 +19,8 @@ constexpr double kLargestTau = 400.0;  // above, a step changes the stress by to
 constexpr double kSlowTau = 60.0;      // above, stiff parts answer slowly
 constexpr double kLeastTau = 0.501;    // below, the noise of the stress decides
 constexpr double kMovedPlug = 5.0;     // τ u/c_s above which TRT thins what moves without yielding
+constexpr double kHugeBingham = 1e4;   // yield stress over viscous stress
+constexpr double kNoBingham = 1e6;     // the same, of which nothing can be computed
 
 ViscosityLaw law_of(const Scene& s) {
   return {s.fluid, s.fluid.law.shear_rate.value_or(typical_shear_rate(s))};
@@ -39,46 +41,106 @@ double shear_rate_at(const ViscosityLaw& law, double bound, bool from_above) {
   return 0.0;
 }
 
+/// Stress without the yield stress at the typical shear rate [Pa].
+double viscous_stress(const Scene& s, double rate) {
+  return s.fluid.law.consistency * std::pow(rate, s.fluid.law.index);
+}
+
+/// Where a bound comes from that the scene does not give; empty where it does.
+std::string lower_default(const Scene& s, const ViscosityLaw& law) {
+  if (s.fluid.law.nu_min) return "";
+  const bool plastic = s.fluid.law.model == ViscosityScene::Model::Bingham &&
+                       law.nu_min() == s.fluid.law.consistency / s.fluid.density;
+  return plastic ? "default: K/ρ" : "default: a hundredth of the typical one";
+}
+std::string upper_default(const Scene& s) {
+  return s.fluid.law.nu_max ? "" : "default: a hundred times the typical one";
+}
+
+/// A bound as messages name it.
+std::string bound_text(const char* key, double value, const std::string& origin) {
+  return fmt::format("fluid.viscosity.{} = {:.4g} m²/s{}", key, value,
+                     origin.empty() ? "" : " (" + origin + ")");
+}
+
+/// What the scene leaves open, with what was taken; empty where it gives all.
+std::string defaults_text(const Scene& s, const ViscosityLaw& law) {
+  std::string text;
+  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (law.shear_rate() == typical_shear_rate(s))  // or the scene gives just that
+    add(fmt::format("shear_rate {:.4g} 1/s (velocity_scale over {:.3g} m)", law.shear_rate(),
+                    s.fluid.velocity_scale / law.shear_rate()));
+  const auto bound = [&](const char* key, double value, const std::string& origin) {
+    if (!origin.empty())
+      add(fmt::format("{} {:.4g} m²/s ({})", key, value, origin.substr(origin.find(' ') + 1)));
+  };
+  bound("nu_min", law.nu_min(), lower_default(s, law));
+  bound("nu_max", law.nu_max(), upper_default(s));
+  return text;
+}
+
 void check_bounds(const Scene& s, const ViscosityLaw& law, Plan& plan) {
   const double low = tau_of(plan, law.nu_min()), high = tau_of(plan, law.nu_max());
   const double a_tau = plan.units.dx * plan.units.dx / (3.0 * plan.units.dt);
+  const std::string lower = bound_text("nu_min", law.nu_min(), lower_default(s, law)),
+                    upper = bound_text("nu_max", law.nu_max(), upper_default(s));
   if (law.nu_min() >= law.nu_max())
-    throw InputError(
-        s.file + ": fluid.viscosity",
-        fmt::format("goes from nu_min = {:.4g} to nu_max = {:.4g} m²/s, which is no range",
-                    law.nu_min(), law.nu_max()),
-        "give nu_min < nu_max");
+    throw InputError(fmt::format("{}: {} is not below {}", s.file, lower, upper),
+                     "give nu_min < nu_max");
   if (high > kLargestTau)
-    throw InputError(fmt::format("{}: fluid.viscosity.nu_max = {:.4g} m²/s has τ = {:.4g}, above "
-                                 "{}: the stress there would follow "
+    throw InputError(fmt::format("{}: {} has τ = {:.4g}, above {}: the stress there would follow "
                                  "the flow too slowly",
-                                 s.file, law.nu_max(), high, kLargestTau),
+                                 s.file, upper, high, kLargestTau),
                      fmt::format("take at most {:.3g} m²/s, or a smaller numerics.time_step",
                                  (kLargestTau - 0.5) * a_tau));
   if (low - 0.5 < 1e-6)
-    throw InputError(fmt::format("{}: fluid.viscosity.nu_min = {:.4g} m²/s has τ - ½ = {:.2g}, too "
-                                 "small for round-off",
-                                 s.file, law.nu_min(), low - 0.5),
-                     fmt::format("take at least {:.3g} m²/s, or a finer cell", 1e-3 * a_tau));
+    throw InputError(
+        fmt::format("{}: {} has τ - ½ = {:.2g}, too small for round-off", s.file, lower, low - 0.5),
+        fmt::format("take at least {:.3g} m²/s, or a finer cell", 1e-3 * a_tau));
   if (high > kSlowTau)
-    plan.warnings.push_back(
-        fmt::format("fluid.viscosity.nu_max = {:.4g} m²/s has τ = {:.3g}: parts that stiff answer "
-                    "a change of load "
-                    "only after some {:.2g} s",
-                    law.nu_max(), high, high * plan.units.dt));
-  if (low < kLeastTau)
     plan.warnings.push_back(fmt::format(
-        "fluid.viscosity.nu_min = {:.4g} m²/s has τ = {:.5g}: where the fluid is that thin "
-        "the flow is not resolved; take a finer cell, or a larger nu_min",
-        law.nu_min(), low));
+        "{} has τ = {:.3g}: parts that stiff answer a change of load only after some {:.2g} s; "
+        "where that matters take a smaller nu_max or numerics.time_step",
+        upper, high, high * plan.units.dt));
+  if (low < kLeastTau)
+    plan.warnings.push_back(
+        fmt::format("{} has τ = {:.5g}: where the fluid is that thin the flow "
+                    "is not resolved; take a finer cell, or a larger nu_min",
+                    lower, low));
   const double rate = law.shear_rate(), typical = law(rate);
-  for (const double bound : {law.nu_min(), law.nu_max()})
-    if (std::abs(typical / bound - 1.0) < 1e-3)
-      plan.warnings.push_back(
-          fmt::format("at the typical shear rate, {:.3g} 1/s, the viscosity is at its bound {:.4g} "
-                      "m²/s: the law does "
-                      "not act; give another bound or fluid.viscosity.shear_rate",
-                      rate, bound));
+  const auto bound = [&](double nu, const std::string& text) {
+    if (std::abs(typical / nu - 1.0) < 1e-3)
+      plan.warnings.push_back(fmt::format(
+          "at the typical shear rate, {:.3g} 1/s, the viscosity is at {}: the law does not act; "
+          "give another bound or fluid.viscosity.shear_rate",
+          rate, text));
+  };
+  bound(law.nu_min(), lower);
+  bound(law.nu_max(), upper);
+}
+
+/// A yield stress beside which the rest of the law is nothing, or is cut off.
+void check_yield(const Scene& s, const ViscosityLaw& law, Plan& plan) {
+  if (!yields(s)) return;
+  const double rate = law.shear_rate(), viscous = viscous_stress(s, rate);
+  const double bingham = s.fluid.law.yield_stress / viscous;
+  const double steps = static_cast<double>(plan.intervals) * plan.fluid_steps;
+  const std::string large = fmt::format(
+      "fluid.viscosity.yield_stress = {:.4g} Pa is {:.2g} times the viscous stress at "
+      "the typical shear rate, {:.3g} 1/s; the viscosity there, {:.3g} m²/s, sets the "
+      "step, and the run takes {:.2g} of them",
+      s.fluid.law.yield_stress, bingham, rate, law.reference(), steps);
+  const char* const cure =
+      "is it in Pa? take a lower one, or the fluid.viscosity.shear_rate at which the fluid flows";
+  if (bingham > kNoBingham) throw InputError(s.file + ": " + large, cure);
+  if (bingham > kHugeBingham) plan.warnings.push_back(large + ": " + cure);
+  const double plastic = viscous / rate / s.fluid.density;
+  if (law.nu_min() > 1.001 * plastic)
+    plan.warnings.push_back(
+        fmt::format("{} is above what the fluid has without its yield stress at the typical shear "
+                    "rate, {:.4g} m²/s: where it flows it is thicker than its law; give a nu_min "
+                    "below that",
+                    bound_text("nu_min", law.nu_min(), lower_default(s, law)), plastic));
 }
 
 /// Operators that do not fit a fluid that yields (docs/viscosity.md, "Limits").
@@ -112,6 +174,7 @@ double smallest_radius(const Scene& s, double dx) {
 void plan_viscosity(const Scene& s, Plan& plan) {
   const ViscosityLaw law = law_of(s);
   if (law.newtonian()) return;
+  check_yield(s, law, plan);
   check_bounds(s, law, plan);
   check_operator(s, law, plan);
   if (s.coupling && s.coupling->lubrication_range > 0.0)
@@ -161,11 +224,13 @@ std::vector<std::string> describe_viscosity(const Scene& s, const Plan& plan) {
     lines.push_back(
         fmt::format("Bingham number {:.3g}, yield stress over viscous stress at {:.3g} 1/s; Re "
                     "{:.3g} over {:.3g} m",
-                    v.yield_stress / (v.consistency * std::pow(rate, v.index)), rate,
+                    v.yield_stress / viscous_stress(s, rate), rate,
                     s.fluid.velocity_scale * length / nu, length));
   else
     lines.push_back(fmt::format("Re {:.3g} with ν at {:.3g} 1/s over {:.3g} m",
                                 s.fluid.velocity_scale * length / nu, rate, length));
+  if (const std::string text = defaults_text(s, law); !text.empty())
+    lines.push_back("by default " + text);
   return lines;
 }
 

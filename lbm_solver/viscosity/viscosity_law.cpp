@@ -45,7 +45,9 @@ ViscosityLaw::ViscosityLaw(const FluidScene& fluid, double shear_rate)
       shear_rate_(shear_rate) {
   const bool bounded = fluid.law.nu_min && fluid.law.nu_max;
   const double middle = newtonian() ? newtonian_ : bounded ? 0.0 : unbounded(shear_rate);
-  nu_min_ = fluid.law.nu_min.value_or(middle / kSpan);
+  const bool bingham = scene_.model == Model::Bingham;
+  nu_min_ =
+      fluid.law.nu_min.value_or(bingham ? std::min(middle / kSpan, consistency_) : middle / kSpan);
   nu_max_ = fluid.law.nu_max.value_or(middle * kSpan);
 }
 

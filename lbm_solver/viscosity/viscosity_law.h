@@ -23,7 +23,8 @@ namespace lbm {
 class ViscosityLaw {
  public:
   /// Takes nu_min and nu_max, where the scene leaves them open, a hundredth and a hundred times the
-  /// viscosity at the typical shear rate.
+  /// viscosity at the typical shear rate; nu_min of a Bingham fluid is at most K/rho, below which
+  /// it never comes.
   /// @param shear_rate  the typical one [1/s]
   ViscosityLaw(const FluidScene& fluid, double shear_rate);
 

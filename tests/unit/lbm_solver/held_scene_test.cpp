@@ -3,6 +3,8 @@
 /// gives them: what is refused, and what becomes of the rest.
 #include <gtest/gtest.h>
 
+#include <fmt/ranges.h>
+
 #include <cmath>
 
 #include "lbm_solver/base/errors.h"
@@ -140,6 +142,39 @@ TEST(HeldOpening, FlowIsThatOfTheScene) {
               1e-9);
   fluid.advance(20000);
   EXPECT_NEAR(fluid.pressure_control()->flow() / fluid.pressure_control()->wanted(0), 1.0, 1e-3);
+}
+
+// The control's time is 8·40·√3 steps of 2.5 ms, 1.39 s. An oscillation with 1.4 times of it has 48
+// % of its amplitude (docs/boundaries.md).
+TEST(HeldOpening, SaysHowFarItFollowsAnOscillation) {
+  const test::TemporaryFolder folder;
+  folder.write("tide.csv", "time,factor\n0,0\n1,1\n1.94,0\n");
+  const auto said = [&](const std::string& keys) {
+    const std::string text =
+        slot(kWater, opening("left", "flow_rate = 1e-4\n" + keys) + opening("right"), kWalls);
+    return fmt::format(
+        "{}", fmt::join(make_plan(read_scene({folder.write("scene.toml", text)})).warnings, "\n"));
+  };
+  EXPECT_EQ(said(""), "");
+  const auto has = [&](const std::string& keys, const std::string& words) {
+    return said(keys).find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(has("frequency = 0.515", "with a period of 1.94 s some 48 % comes"))
+      << said("frequency = 0.515");
+  EXPECT_TRUE(has("frequency = 10.0", "with a period of 0.1 s less than 12 % comes"));
+  EXPECT_TRUE(has("table = \"tide.csv\"\nrepeat = \"periodic\"", "some 48 % comes"));
+  EXPECT_FALSE(has("frequency = 0.03", "comes"));
+}
+
+TEST(HeldFlow, WarnsWhereRoundOffShowsInTheForce) {
+  const test::TemporaryFolder folder;
+  const auto said = [&](const std::string& rate) {
+    const Scene s =
+        read_scene({folder.write("scene.toml", slot(kWater + "flow_rate = " + rate + "\n"))});
+    return fmt::format("{}", fmt::join(make_plan(s).warnings, "\n"));
+  };
+  EXPECT_NE(said("1e-17").find("of the force that is found for it"), std::string::npos);
+  EXPECT_EQ(said("1e-12"), "");
 }
 
 // A parabola from a table of 81 lines, against the one that a scene can name: chords are lower by

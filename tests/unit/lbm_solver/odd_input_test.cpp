@@ -123,6 +123,25 @@ TEST_F(OddInput, TablesThatDoNotReachAreWarnedOf) {
   EXPECT_EQ(warnings(profile("x,factor\n0,0\n0.009,1\n")), "");
 }
 
+TEST_F(OddInput, TablesOfAnotherUnitAreWarnedOf) {
+  const std::string periodic = "table = \"in.csv\"\nrepeat = \"periodic\"";
+  const auto table = [&](const std::string& content, const std::string& keys) {
+    folder_.write("in.csv", content);
+    return kInlet + keys;
+  };
+  // ns taken for s: a step is 0.1 s here
+  expect_in(refusal(table("time,factor\n0,1\n5e-7,0\n1e-6,1\n", periodic)),
+            "goes from 0 to 1e-06 s, 1e-05 fluid steps of 0.1 s, of which a period needs at least");
+  EXPECT_EQ(refusal(table("time,factor\n0,1\n2,0\n4,1\n", periodic)), "");
+  expect_in(warnings(table("time,factor\n0,0\n1e-6,1\n2e-6,1\n", "table = \"in.csv\"")),
+            "what it says in between is lost; are its times in seconds?");
+  // mm taken for m
+  expect_in(warnings(table("x,factor\n0,0\n10,1\n", "profile_table = \"in.csv\"")),
+            "of the table only 0.1 % lies on it; its places are in metres, are they in mm?");
+  expect_in(warnings(table("time,factor\n0,1\n4,1\n", "table = \"in.csv\"\nfrequency = 0.25")),
+            "the table of boundary 3 stands beside a frequency: the value is multiplied by both");
+}
+
 TEST_F(OddInput, SensorsThatMeasureNothingAreNamed) {
   expect_in(refusal("[[sensor]]\nname = \"a\"\nkind = \"line\"\nfrom = [0.001, 0.001]\n"
                     "to = [0.001, 0.001]"),

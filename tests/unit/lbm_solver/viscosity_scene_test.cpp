@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/scene_reader.h"
@@ -73,6 +75,17 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"carreau_without_bounds",
                 "viscosity = {model = \"carreau\", index = 0.5, time_constant = 1, nu_max = 1}",
                 {"nu_min", "missing"}},
+        Refused{"carreau_that_thickens",
+                "viscosity = {model = \"carreau\", index = 1.2, time_constant = 1, nu_min = 1e-6, "
+                "nu_max = 1e-4}",
+                {"index", "does not thin", "what thickens is a power_law"}},
+        Refused{"carreau_that_is_newtonian",
+                "viscosity = {model = \"carreau\", index = 1.0, time_constant = 1, nu_min = 1e-6, "
+                "nu_max = 1e-4}",
+                {"index", "does not thin", "newtonian"}},
+        Refused{"yield_stress_of_rock",
+                "viscosity = {model = \"bingham\", consistency = 0.1, yield_stress = 1e6}",
+                {"yield_stress = 1e+06 Pa", "times the viscous stress", "is it in Pa?"}},
         Refused{"too_stiff", kGel + ", nu_max = 10.0}", {"nu_max", "τ", "take at most"}},
         Refused{"smagorinsky_without_its_constant",
                 "kinematic_viscosity = 1e-6\nviscosity = {model = \"smagorinsky\"}",
@@ -111,7 +124,124 @@ TEST(ViscosityOfAScene, IsThatAtTheTypicalShearRate) {
   EXPECT_NEAR(plan.kernel.parameters.tau, 0.5 + 3.0 * 2.5e-4 * plan.units.dt / 2.5e-7, 1e-9);
   ASSERT_TRUE(plan.kernel.parameters.viscosity_table);
   EXPECT_EQ(plan.kernel.collision, CollisionOperator::Trt);
-  EXPECT_EQ(describe_viscosity(s, plan).size(), 3u);
+  EXPECT_EQ(describe_viscosity(s, plan).size(), 4u);
+}
+
+/// Whether a plan warns in these words.
+bool warns(const Plan& plan, const std::string& words) {
+  return std::ranges::any_of(
+      plan.warnings, [&](const std::string& w) { return w.find(words) != std::string::npos; });
+}
+
+TEST(ViscosityOfAScene, SaysWhichDefaultsItTook) {
+  const test::TemporaryFolder folder;
+  const auto last_line = [&](const std::string& law) {
+    const Scene s = scene_with(folder, law);
+    return describe_viscosity(s, make_plan(s)).back();
+  };
+  EXPECT_EQ(last_line(kGel + "}"),
+            "by default shear_rate 4 1/s (velocity_scale over 0.005 m), nu_min 2.5e-06 m²/s (a "
+            "hundredth of the typical one), nu_max 0.025 m²/s (a hundred times the typical one)");
+  EXPECT_EQ(last_line(kGel + ", shear_rate = 5.0, nu_max = 1e-2}"),
+            "by default nu_min 2.236e-06 m²/s (a hundredth of the typical one)");
+  const std::string all = last_line(kGel + ", shear_rate = 5.0, nu_min = 1e-6, nu_max = 1e-2}");
+  EXPECT_EQ(all.find("by default"), std::string::npos) << all;
+  // a bound of a message, too
+  Scene s = scene_with(folder, kGel + "}");
+  s.numerics.time_step = 4e-4;
+  EXPECT_TRUE(
+      warns(make_plan(s), "nu_max = 0.025 m²/s (default: a hundred times the typical one)"));
+}
+
+// At 1000 times the viscous stress a hundredth of the viscosity would be ten times K/ρ.
+TEST(ViscosityOfAScene, ABinghamFluidComesDownToItsPlasticViscosity) {
+  const test::TemporaryFolder folder;
+  const std::string mud = "viscosity = {model = \"bingham\", consistency = 0.01, yield_stress = 40";
+  const Scene s = scene_with(folder, mud + "}");
+  EXPECT_DOUBLE_EQ(ViscosityLaw(s.fluid, 4.0).nu_min(), 1e-5);
+  const Plan plan = make_plan(s);
+  EXPECT_NE(describe_viscosity(s, plan).back().find("nu_min 1e-05 m²/s (K/ρ)"), std::string::npos);
+  EXPECT_FALSE(warns(plan, "thicker than its law"));
+  EXPECT_TRUE(warns(make_plan(scene_with(folder, mud + ", nu_min = 1e-4}")),
+                    "where it flows it is thicker than its law"));
+  // no bound of its own where the viscosity goes on falling
+  const std::string paste =
+      "viscosity = {model = \"herschel_bulkley\", consistency = 0.01, index = 0.5, yield_stress = ";
+  EXPECT_TRUE(warns(make_plan(scene_with(folder, paste + "10}")), "thicker than its law"));
+  EXPECT_FALSE(warns(make_plan(scene_with(folder, paste + "1}")), "thicker than its law"));
+}
+
+TEST(ViscosityOfAScene, WarnsOfAHugeBinghamNumber) {
+  const test::TemporaryFolder folder;
+  const std::string mud =
+      "viscosity = {model = \"bingham\", consistency = 0.001, nu_max = 0.05, yield_stress = ";
+  EXPECT_TRUE(
+      warns(make_plan(scene_with(folder, mud + "80}")), "sets the step, and the run takes"));
+  EXPECT_FALSE(warns(make_plan(scene_with(folder, mud + "8}")), "sets the step"));
+}
+
+// ρ G H/2 = 10 Pa at the walls of the slot.
+TEST(ViscosityOfAScene, WarnsOfAYieldStressThatNothingOvercomes) {
+  const test::TemporaryFolder folder;
+  const auto held = [&](const std::string& yield, const std::string& rest = "") {
+    const std::string law =
+        "viscosity = {model = \"bingham\", consistency = 1.0, yield_stress = " + yield + "}";
+    const Scene s = read_scene({folder.write("scene.toml", slot(law, rest))});
+    return warns(make_plan(s), "holds everything");
+  };
+  EXPECT_TRUE(held("10.1"));
+  EXPECT_FALSE(held("9.9"));
+  const std::string top = "[[boundary]]\nside = \"top\"\nkind = ";
+  EXPECT_FALSE(held("10.1", top + "\"moving_wall\"\nvelocity = [0.01, 0.0]\n"));
+}
+
+// Around discs of a periodic box it is their capacity, (4√2 + 2π) σ_y D; a drop of pressure along
+// walls Δp H/(2 L); a disc's weight against the same capacity.
+TEST(ViscosityOfAScene, KnowsWhatDiscsPressuresAndWeightsOvercome) {
+  const test::TemporaryFolder folder;
+  const auto held = [&](double yield, const std::string& box, const std::string& force,
+                        const std::string& rest) {
+    const std::string law = "viscosity = {model = \"bingham\", consistency = 1.0, yield_stress = " +
+                            std::to_string(yield) + "}\n";
+    const Scene s = read_scene({folder.write(
+        "scene.toml", "[box]\nsize = [0.02, 0.01]\n" + box + "[fluid]\ndensity = 1000.0\n" + force +
+                          "velocity_scale = 0.02\n" + law + "[numerics]\ncell = 0.0005\n" +
+                          "[run]\nend_time = 0.1\n" + rest)});
+    return warns(make_plan(s), "holds everything");
+  };
+  const auto at_limit = [&](double limit, const std::string& box, const std::string& force,
+                            const std::string& rest) {
+    return held(1.01 * limit, box, force, rest) && !held(0.99 * limit, box, force, rest);
+  };
+  const double disc = 4.0 * std::sqrt(2.0) + 2.0 * std::numbers::pi;
+  EXPECT_TRUE(at_limit(
+      2000.0 * 2e-4 / (disc * 0.004), "sides_x = \"periodic\"\nsides_y = \"periodic\"\n",
+      "body_force = [2.0, 0.0]\n", "[[obstacle]]\ncentre = [0.01, 0.005]\ndiameter = 0.004\n"));
+  EXPECT_TRUE(at_limit(8.0 * 0.01 / (2.0 * 0.02), "", "",
+                       "[[boundary]]\nside = \"left\"\nkind = \"pressure\"\npressure = 8.0\n"
+                       "[[boundary]]\nside = \"right\"\nkind = \"pressure\"\n"));
+  EXPECT_TRUE(at_limit(500.0 * 9.81 * std::numbers::pi / 4.0 * 0.002 / disc, "",
+                       "gravity = [0.0, -9.81]\n",
+                       "[particles]\ndiameter = 0.002\ndensity = 1500.0\n[coupling]\n"));
+}
+
+// Its formula is Newtonian.
+TEST(ViscosityOfAScene, RefusesLubrication) {
+  const test::TemporaryFolder folder;
+  const auto why = [&](const std::string& fluid) -> std::string {
+    const std::string grains =
+        "[particles]\ndiameter = 0.002\ndensity = 1500.0\n[coupling]\nlubrication_range = 0.5\n";
+    try {
+      make_plan(read_scene({folder.write("scene.toml", slot(fluid, grains))}));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string refusal = why(kGel + "}");
+  EXPECT_NE(refusal.find("coupling.lubrication_range: is a Newtonian law"), std::string::npos)
+      << refusal;
+  EXPECT_EQ(why("kinematic_viscosity = 1e-4"), "");
 }
 
 TEST(ViscosityOfAScene, NewtonianOnesHaveNoTable) {
@@ -154,9 +284,7 @@ TEST(ViscosityOfAScene, IsThatOfCarreau) {
 TEST(ViscosityOfAScene, WarnsOfALawThatDoesNotAct) {
   const test::TemporaryFolder folder;
   const Plan plan = make_plan(scene_with(folder, kGel + ", nu_min = 1e-5, nu_max = 1e-4}"));
-  EXPECT_TRUE(std::ranges::any_of(plan.warnings, [](const std::string& w) {
-    return w.find("the law does not act") != std::string::npos;
-  }));
+  EXPECT_TRUE(warns(plan, "the law does not act"));
 }
 
 TEST(ViscosityOfAScene, WarnsOfOperatorsThatDoNotFitAYieldStress) {
@@ -165,9 +293,7 @@ TEST(ViscosityOfAScene, WarnsOfOperatorsThatDoNotFitAYieldStress) {
                           const std::string& words) {
     Scene s = scene_with(folder, law);
     s.numerics.collision = from_name<CollisionOperator>(collision);
-    return std::ranges::any_of(make_plan(s).warnings, [&](const std::string& w) {
-      return w.find(words) != std::string::npos;
-    });
+    return warns(make_plan(s), words);
   };
   const std::string mud =
       "viscosity = {model = \"bingham\", consistency = 0.1, yield_stress = 0.1, nu_max = ";

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/solver/drive_check.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+
+#include "lbm_solver/solver/driven_speed.h"
+#include "lbm_solver/solver/flow_control.h"
+#include "lbm_solver/solver/pressure_control.h"
+
+namespace lbm {
+namespace {
+
+constexpr double kShareOfGrain = 0.1;  // seen: 0.84 of the force where a whole grain would make 8
+constexpr double kMuchRoundOff = 0.01;
+constexpr double kUnknown = std::numeric_limits<double>::infinity();  // a stress that may be any
+
+/// Smallest distance between walls that lie along an axis [m]; 0: there are none.
+double gap_along(const Scene& s, int axis) {
+  double gap = 0.0;
+  for (int k = 0; k < s.box.dimension; ++k)
+    if (k != axis && s.box.sides[k] == SideKind::Wall)
+      gap = gap > 0.0 ? std::min(gap, s.box.size[k]) : s.box.size[k];
+  return gap;
+}
+
+/// Load on an isolated disc or sphere over σ_y D (a layer or the square), beyond which a yield
+/// stress σ_y does not hold it: 4√2 + 2π [RandolphHoulsby1984], π/(6·0.0477) [Beris1985].
+double capacity(int dimension) {
+  return dimension == 2 ? 4.0 * std::numbers::sqrt2 + 2.0 * std::numbers::pi
+                        : std::numbers::pi / (6.0 * 0.0477);
+}
+
+/// Largest yield stress that a force on each volume of fluid along an axis overcomes [Pa]. Between
+/// walls G H/2, whatever lies in the channel besides: a stress that grows so towards the walls
+/// bears the force. Around discs or spheres their capacity; else at most G times the box.
+double stress_of(const Scene& s, double force, int axis) {
+  if (force == 0.0) return 0.0;
+  if (const double gap = gap_along(s, axis); gap > 0.0) return 0.5 * force * gap;
+  if (s.obstacles.empty()) return kUnknown;  // nothing resists
+  const int d = s.box.dimension;
+  double borne = 0.0, volume = 1.0, across = kUnknown;
+  bool round = true;
+  for (const ObstacleScene& o : s.obstacles) {
+    round = round && o.round && !o.hollow;
+    borne += capacity(d) * std::pow(o.diameter, d - 1);
+  }
+  for (int k = 0; k < d; ++k) {
+    volume *= s.box.size[k];
+    if (k != axis) across = std::min(across, s.box.size[k]);
+  }
+  return round ? force * volume / borne : force * across;
+}
+
+/// Whether something moves at a velocity of its own, which no yield stress stops.
+bool has_given_motion(const Scene& s) {
+  const auto moves = [](const BoundaryScene& b) {
+    return b.velocity.norm() * b.table.largest() > 0.0 || b.flow_rate.value_or(0.0) != 0.0;
+  };
+  const auto turns = [](const ObstacleScene& o) { return o.motion || !o.spin.isZero(0.0); };
+  return std::ranges::any_of(s.boundaries, moves) || std::ranges::any_of(s.obstacles, turns) ||
+         (s.fluid.flow && s.fluid.flow->rate != 0.0) || s.initial.velocity.norm() > 0.0;
+}
+
+/// Of pressures on openings, or across periodic sides.
+double stress_of_pressure(const Scene& s) {
+  const double pressure = largest_pressure(s);
+  if (pressure == 0.0) return 0.0;
+  int axis = -1;
+  for (const BoundaryScene& b : s.boundaries) {
+    if (axis >= 0 && axis_of(b.side) != axis) return kUnknown;  // around a corner
+    axis = axis_of(b.side);
+    if (std::ranges::count(s.boundaries, b.side, &BoundaryScene::side) > 1) return kUnknown;
+  }
+  if (axis < 0) s.box.pressure_jump.cwiseAbs().maxCoeff(&axis);
+  return stress_of(s, pressure / s.box.size[axis], axis);
+}
+
+/// Of a particle's weight in the fluid.
+double stress_of_weight(const Scene& s) {
+  double excess = 0.0;
+  for (const double density : {s.particles->density.lo, s.particles->density.hi})
+    excess = std::max(excess, std::abs(density - s.fluid.density));
+  const double volume = s.box.dimension == 2 ? std::numbers::pi / 4.0 : std::numbers::pi / 6.0;
+  return excess * s.fluid.gravity.norm() * s.particles->diameter.hi * volume /
+         capacity(s.box.dimension);
+}
+
+/// A yield stress that nothing overcomes.
+void check_held(const Scene& s, Plan& plan) {
+  const double yield = s.fluid.law.yield_stress;
+  if (yield == 0.0 || has_given_motion(s)) return;
+  int axis = 0;
+  const double force =
+      s.fluid.body_force.cwiseAbs().maxCoeff(&axis) > 0.0
+          ? s.fluid.density * s.fluid.body_force.norm() * s.fluid.body_force_table.largest()
+          : 0.0;
+  double stress = stress_of(s, force, axis) + stress_of_pressure(s);
+  const bool grains = s.particles && s.coupling;
+  if (grains) stress += stress_of_weight(s);
+  if (stress == 0.0 || stress >= yield) return;
+  plan.warnings.push_back(fmt::format(
+      "fluid.viscosity.yield_stress = {:.3g} Pa holds everything: what drives here overcomes "
+      "{:.2g} Pa at most{}, so that nothing moves but by the creep of nu_max; take a lower yield "
+      "stress or a stronger drive, if that is not meant",
+      yield, stress, grains ? ", single particles by their weight included" : ""));
+}
+
+/// Part of an oscillation's amplitude that comes through an opening whose flow is held, by its
+/// period over the control's time T (docs/boundaries.md).
+struct Follows {
+  double period, part;
+};
+constexpr Follows kFollows[] = {{0.5, 0.12}, {1.4, 0.48}, {5.0, 0.78}, {14.0, 0.95}};
+
+void check_lag(const BoundaryScene& b, Plan& plan) {
+  const bool repeats = b.table.repeats && !b.table.times.empty();
+  const double period = b.frequency > 0.0 ? 1.0 / b.frequency
+                        : repeats         ? b.table.times.back() - b.table.times.front()
+                                          : kUnknown;
+  const double time = PressureControl::time(plan.domain.cells()[axis_of(b.side)]) * plan.units.dt;
+  const Follows* const last = std::prev(std::end(kFollows));
+  const double over = period / time;
+  if (over > 1.4 * last->period) return;
+  const auto at = std::ranges::lower_bound(kFollows, over, {}, &Follows::period);
+  double part = at == std::begin(kFollows) ? at->part : last->part;
+  if (at != std::begin(kFollows) && at != std::end(kFollows))
+    part = std::lerp((at - 1)->part, at->part,
+                     std::log(over / (at - 1)->period) / std::log(at->period / (at - 1)->period));
+  plan.warnings.push_back(fmt::format(
+      "boundary.flow_rate follows what is slow beside {:.3g} s, eight crossings of the box by "
+      "sound: of a flow with a period of {:.3g} s {} {:.0f} % comes; take a longer period, or a "
+      "boundary of kind \"velocity\", whose flow follows at once",
+      time, period, at == std::begin(kFollows) ? "less than" : "some", 100.0 * part));
+}
+
+/// A held flow so slow that the rounding of momenta shows in the force that is found. It is a part
+/// of a grain, shared by the cells' many values, over Δ; the force of a channel is 12 ν U/H².
+void check_round_off(const Scene& s, Plan& plan) {
+  const double speed = mean_speed(s) / plan.units.velocity();
+  if (speed == 0.0) return;
+  const int axis = s.fluid.flow->axis;
+  const Cell3 cells = plan.domain.cells();
+  double width = gap_along(s, axis);
+  for (int k = 0; k < s.box.dimension && gap_along(s, axis) == 0.0; ++k)
+    if (k != axis) width = std::max(width, s.box.size[k]);
+  const double nu = (plan.kernel.parameters.tau - 0.5) / 3.0;
+  const double force = 12.0 * nu * speed / std::pow(width / plan.units.dx, 2);
+  const double grain = kShareOfGrain * momentum_grain(cells);
+  const double part = grain / static_cast<double>(FlowControl::look_every(cells[axis])) / force;
+  if (part > kMuchRoundOff)
+    plan.warnings.push_back(
+        fmt::format("fluid.flow_rate is a mean of {:.2g} Δx/Δt: round-off makes some {:.2g} % of "
+                    "the force that is found for it; take a smaller fluid.velocity_scale or a "
+                    "longer numerics.time_step",
+                    speed, 100.0 * part));
+}
+
+}  // namespace
+
+void check_driven(const Scene& s, Plan& plan) {
+  check_held(s, plan);
+  check_round_off(s, plan);
+  for (const BoundaryScene& b : s.boundaries)
+    if (b.flow_rate) check_lag(b, plan);
+}
+
+}  // namespace lbm

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "lbm_solver/solver/plan.h"
+
+namespace lbm {
+
+/// Drives that do not do what the scene wants of them: stresses that a yield stress holds, and
+/// flows that are held too slowly for their change in time, or for round-off. Adds warnings.
+void check_driven(const Scene& scene, Plan& plan);
+
+}  // namespace lbm
