@@ -20,8 +20,7 @@ struct FieldFrame {
   /// fraction and kinematic viscosity [m²/s]; in the first frame of a file what images cover
   CellFields cells;
   /// Mean over the box of the momentum that has arrived, over the density at rest [m/s]: in steady
-  /// flow the flux through every face of the box, covered cells too, under every solid term.
-  /// A body force on cells that are covered whole makes it take turns from step to step
+  /// flow the flux through every face of the box, covered cells too, under every solid term
   /// (docs/output.md, "Flux").
   std::optional<Vec3> flux;
   std::vector<protocol::Particle> particles;

@@ -9,6 +9,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/immersed/geometry.h"
+#include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/plan.h"
 
@@ -248,6 +249,27 @@ void expect_fluid(const Scene& s, const Fluid& fluid) {
                    "threshold and solid, of a mesh at its scale");
 }
 
+/// Gives the cells that a solid covers whole, and that send back all that arrives, the velocity of
+/// their solid. They keep for ever what they hold among them, turned to and fro from step to step,
+/// so they must not begin with the half of a body force that set_equilibrium takes off: the force
+/// never acts there, and a flux would change by it from step to step.
+void settle_solids(const Plan& p, Fluid& fluid) {
+  if (!fluid.cover()) return;
+  const SolidTerm rows = solid_term(p.kernel.solid_term, p.kernel.parameters.tau);
+  const auto reflects = [](const SolidTerm::Halves& h) {
+    return h.odd.f == -2.0 && h.odd.fluid == 0.0;
+  };
+  const Cell3& n = fluid.cells().size;
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x) {
+        const auto [cover, velocity] = fluid.cover()->cell(x, y, z);
+        if (cover < kWhole) continue;
+        if (reflects(cover >= kWall ? rows.wall : cover >= kCore ? rows.core : rows.whole))
+          fluid.set_equilibrium({x, y, z}, 1.0, velocity + 0.5 * fluid.body_force());
+      }
+}
+
 }  // namespace
 
 Pose pose_in_cells(const Units& units, const MotionScene& motion, std::int64_t step) {
@@ -333,6 +355,7 @@ Fluid make_fluid(const Scene& s, const Plan& p, const Decomposition& ranks) {
         fluid.set_equilibrium({x, y, z}, 1.0 + at.drho,
                               inside ? fluid.cover()->cell(x, y, z).velocity : at.u);
       }
+  settle_solids(p, fluid);
   return fluid;
 }
 

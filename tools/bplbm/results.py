@@ -94,8 +94,8 @@ class Run:
         return velocity.reshape(-1, velocity.shape[-1]).mean(axis=0)
 
     def flux(self, name):
-        """Mean of the momentum that arrives in the cells, over the density [m/s], its components. Where a force acts on cells
-        that are covered whole it takes turns from step to step: the flux is the mean of two, or `mean_velocity`."""
+        """Mean over the box of the momentum that arrives in the cells, over the density [m/s], its components: in steady flow
+        the flux, covered cells or not, with every solid term. None where a scene has no covered cells."""
         with h5py.File(self.folder / "fields.h5") as f:
             return [f[name].attrs[f"flux_{axis}"] for axis in "xyz" if f"flux_{axis}" in f[name].attrs]
 

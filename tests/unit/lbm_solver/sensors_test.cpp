@@ -6,6 +6,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/field_average.h"
+#include "lbm_solver/coupling/shown_cells.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "lbm_solver/solver/plane_flow.h"
 #include "lbm_solver/solver/side_loads.h"
@@ -67,6 +68,51 @@ TEST(PlaneFlow, IsTheSameThroughEveryPlaneOfASteadyFlow) {
     EXPECT_NEAR(PlaneFlow::of(fluid, column(x), 0).volume, first, 1e-9 * first) << x;
   EXPECT_EQ(PlaneFlow::of(fluid, column(5), 0).area, kHeight - 5);
   EXPECT_EQ(PlaneFlow::of(fluid, column(4), 0).area, kHeight - 2.5);  // half of it before the block
+}
+
+// Cells that are covered whole keep what they begin with, and turn it to and fro: with the half of
+// a body force that belongs to the fluid the flow would change by that of their cells from step to
+// step. A block, a disc, and for each term that reflects in them.
+TEST(PlaneFlow, IsTheSameInEveryStepWhereABodyForceActsOnSolids) {
+  const test::TemporaryFolder folder;
+  for (const char* term : {"resistance", "layered_resistance", "holdych", "noble_torczynski"}) {
+    const Scene scene = read_scene({folder.write("scene.toml", std::string(R"(
+[box]
+size = [0.03, 0.016]
+sides_x = "periodic"
+sides_y = "periodic"
+[fluid]
+density = 1000.0
+kinematic_viscosity = 1e-5
+body_force = [0.01, 0.0]
+velocity_scale = 0.01
+[numerics]
+cell = 0.001
+collision = "trt"
+solid_term = ")") + term + R"("
+[[obstacle]]
+from = [0.002, 0.003]
+to = [0.008, 0.010]
+[[obstacle]]
+centre = [0.019, 0.0082]
+diameter = 0.009
+[run]
+end_time = 1.0
+)")});
+    const Plan plan = make_plan(scene);
+    Fluid fluid = make_fluid(scene, plan);
+    fluid.advance(4001);
+    const double g = fluid.body_force().x();
+    for (const int x : {4, 18}) {
+      const CellBox plane{{x, 0, 0}, {x + 1, 16, 1}};
+      const double before = PlaneFlow::of(fluid, plane, 0).volume;
+      const double flux = mean_arrived_momentum(fluid).x();
+      fluid.advance(1);
+      EXPECT_NEAR(PlaneFlow::of(fluid, plane, 0).volume, before, 1e-3 * g) << term << ' ' << x;
+      EXPECT_NEAR(mean_arrived_momentum(fluid).x(), flux, 1e-5 * g) << term;
+      EXPECT_NEAR(16 * flux, before, 1e-3 * g) << term << ' ' << x;
+    }
+  }
 }
 
 // What drives the fluid is what the plates take, half each.
