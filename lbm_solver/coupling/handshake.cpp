@@ -5,8 +5,10 @@
 
 #include <algorithm>
 
+#include "lbm_solver/base/mesh_cut.h"
 #include "lbm_solver/coupling/motion_words.h"
 #include "lbm_solver/io/stl_file.h"
+#include "lbm_solver/solver/motion_check.h"
 #include "protocol/wire/walls.h"
 
 namespace lbm {
@@ -47,9 +49,24 @@ std::vector<std::string> discs_of(const Scene& s) {
   return discs;
 }
 
+/// The surface of a mesh as the solid's program gets it. LIGGGHTS stops where a triangle's middle
+/// lies beyond the box, and where a triangle reaches farther than once around a periodic side, as
+/// the layer of two dimensions is: what stands there is cut at the box, beyond which no grain is,
+/// and a block of a thin layer is made of short pieces.
+TriangleMesh offered_mesh(const Scene& s, const ObstacleScene& o) {
+  const TriangleMesh& whole = *o.mesh->surface;
+  if (!s.coupling) return whole;
+  if (s.box.dimension == 3)
+    return o.motion && !o.motion->surface_only
+               ? whole
+               : clipped(whole, s.box.origin, s.box.origin + s.box.size);
+  const double room = reach_in_layer(s);
+  return room > 0.0 && largest_reach(whole) > room ? short_walls(whole, room) : whole;
+}
+
 /// The box around a mesh as it lies at a time.
-std::string mesh_text(const ObstacleScene& o, double time) {
-  TriangleMesh mesh = *o.mesh->surface;
+std::string mesh_text(const Scene& s, const ObstacleScene& o, double time) {
+  TriangleMesh mesh = offered_mesh(s, o);
   if (o.motion) {
     const Pose pose = pose_at(*o.motion, time);
     for (Vec3& v : mesh.vertices) v = pose.moved(v);
@@ -63,7 +80,7 @@ void add_walls(const Scene& s, double time, protocol::Hello& h) {
   for (int side = 0; side < 2 * s.box.dimension; ++side)
     (*h.sides)[side] = wall_at(s, static_cast<SideName>(side));
   const auto meshes = meshes_of(s);
-  for (const ObstacleScene* o : meshes) h.bodies.push_back("obstacle: " + mesh_text(*o, time));
+  for (const ObstacleScene* o : meshes) h.bodies.push_back("obstacle: " + mesh_text(s, *o, time));
   std::size_t n = s.obstacles.size() - meshes.size();
   for (std::size_t i = 0; i < discs_of(s).size(); ++i, --n)
     h.bodies.push_back(fmt::format("disc{} (cylinder)", i + 1));
@@ -189,7 +206,7 @@ void append(Variables& all, const Variables& more) {
 void write_meshes(const Scene& s, const std::string& folder) {
   const auto meshes = meshes_of(s);
   for (std::size_t i = 0; i < meshes.size(); ++i)
-    write_stl(mesh_file(folder, i + 1), *meshes[i]->mesh->surface);
+    write_stl(mesh_file(folder, i + 1), offered_mesh(s, *meshes[i]));
 }
 
 void set_subdomain(const Units& units, const Domain& domain, const Block& cells,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "lbm_solver/base/errors.h"
@@ -14,6 +15,10 @@ namespace {
 
 constexpr int kLooks = 500;             // times at which a way is looked at
 constexpr double kAcrossItself = 0.05;  // part of a surface's speed that may cross it
+// Beyond a side LIGGGHTS looks for triangles within their reach and half of its cut-off, with what
+// moves in between: 0.6 diameters at a skin of 0.1, more where contacts act at a distance.
+constexpr double kLayerRoom = 0.75;  // diameters
+constexpr double kThinLayer = 0.1;   // diameters that are then left for a triangle
 
 /// Places that hold an obstacle between them, at rest.
 std::vector<Vec3> corners(const Scene& s, const ObstacleScene& o) {
@@ -47,6 +52,53 @@ double leaves_at(const Scene& s, const ObstacleScene& o) {
         return time;
   }
   return -1.0;
+}
+
+struct Beyond {
+  double time;
+  int side;  ///< of the box
+};
+
+/// When the middle of a triangle first lies beyond a wall of the box.
+std::optional<Beyond> part_leaves(const Scene& s, const ObstacleScene& o) {
+  const TriangleMesh& mesh = *o.mesh->surface;
+  std::vector<Vec3> middles;
+  for (const auto& t : mesh.triangles)
+    middles.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0);
+  for (int look = 0; look <= kLooks; ++look) {
+    const double time = s.end_time * look / kLooks;
+    const Pose pose = pose_at(*o.motion, time);
+    for (const Vec3& middle : middles) {
+      const Vec3 now = pose.moved(middle) - s.box.origin;
+      for (int k = 0; k < s.box.dimension; ++k) {
+        if (s.box.sides[k] != SideKind::Wall) continue;
+        const double near = 1e-9 * s.box.size[k];
+        if (now[k] < -near) return Beyond{time, 2 * k};
+        if (now[k] > s.box.size[k] + near) return Beyond{time, 2 * k + 1};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// What LIGGGHTS would stop at, without saying why.
+void check_for_liggghts(const Scene& s, const ObstacleScene& o, std::size_t number, Plan& plan) {
+  constexpr const char* sides[] = {"left", "right", "bottom", "top", "back", "front"};
+  if (o.motion->surface_only) return;
+  if (const auto beyond = part_leaves(s, o))
+    plan.warnings.push_back(fmt::format(
+        "the {}. obstacle reaches through the wall \"{}\" at {:.4g} s: LIGGGHTS stops there (a "
+        "mesh "
+        "\"left the domain\"), and grains between the two are crushed; keep it within the box all "
+        "along its way",
+        number, sides[beyond->side], beyond->time));
+  if (const double d = s.particles->diameter.hi;
+      s.box.dimension == 2 && reach_in_layer(s) < kThinLayer * d)
+    plan.warnings.push_back(fmt::format(
+        "box.depth = {:.4g} m is too thin for the {}. obstacle, which moves: LIGGGHTS repeats the "
+        "layer and stops (\"assertion failed\") where grains of {:.4g} m reach through it to the "
+        "next but one; take a depth of at least {:.4g} m, loads and masses grow with it alike",
+        s.box.depth, number, d, d));
 }
 
 /// Part of the surface's velocity that crosses it, where it has one.
@@ -85,6 +137,7 @@ void check_motion(const Scene& s, const ObstacleScene& o, std::size_t number, Pl
                     "follow: grains and fluid would meet two walls",
                     s.file, number, why),
         "take a motion that is linear, a rotation, or one oscillation");
+  if (s.coupling && o.mesh) check_for_liggghts(s, o, number, plan);
   if (!m.times.empty() && m.times.front() > 0.0)
     warn(fmt::format("has a motion_table that begins at {:.4g} s: it stands until then",
                      m.times.front()));
@@ -117,6 +170,10 @@ void check_motion(const Scene& s, const ObstacleScene& o, std::size_t number, Pl
 }
 
 }  // namespace
+
+double reach_in_layer(const Scene& s) {
+  return s.box.depth - kLayerRoom * s.particles->diameter.hi;
+}
 
 double reach_of(const ObstacleScene& o) {
   if (!o.motion) return 0.0;

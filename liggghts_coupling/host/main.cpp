@@ -131,7 +131,10 @@ std::string Output::reason() {
   std::fflush(nullptr);  // LIGGGHTS has not
   const std::string found = without_source(
       ear.last_error().empty() ? protocol::last_error_line({log, screen}) : ear.last_error());
-  const std::string said = found.empty() ? "LIGGGHTS stopped with an error; see its output" : found;
+  const std::string advice = advice_for(found);
+  const std::string said = found.empty()    ? "LIGGGHTS stopped with an error; see its output"
+                           : advice.empty() ? found
+                                            : found + "; what to do: " + advice;
   // a variable that cannot be read ends it once more, and leads here again
   LAMMPS_NS::LAMMPS* const one = std::exchange(lammps, nullptr);
   if (!one || (!found.empty() && found.find("illegal variable") == std::string::npos)) return said;

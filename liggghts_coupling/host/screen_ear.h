@@ -34,4 +34,8 @@ class ScreenEar {
 /// A line of LIGGGHTS without the place in its source, which ends it: " (pair.cpp:12)".
 std::string without_source(const std::string& error);
 
+/// What to do about an error of LIGGGHTS that does not say it; empty where it does, or nobody
+/// knows.
+std::string advice_for(const std::string& error);
+
 }  // namespace dem

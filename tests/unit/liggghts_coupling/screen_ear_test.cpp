@@ -51,4 +51,13 @@ TEST(ScreenEar, AnErrorIsToldWithoutItsSource) {
   EXPECT_EQ(dem::without_source("ERROR: types (1 and 2)"), "ERROR: types (1 and 2)");
 }
 
+TEST(AdviceFor, SaysWhatToDoAboutMeshes) {
+  EXPECT_NE(dem::advice_for("Mesh (id a): All 12 mesh elements have been lost / left the domain.")
+                .find("${mesh1}"),
+            std::string::npos);
+  EXPECT_NE(dem::advice_for("ERROR on proc 0: assertion failed").find("a larger depth"),
+            std::string::npos);
+  EXPECT_EQ(dem::advice_for("Illegal fix command"), "");
+}
+
 }  // namespace

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "lbm_solver/base/triangle_mesh.h"
+
+namespace lbm {
+
+/// The part of a surface that lies in a box: triangles that cross its sides are cut there, what
+/// lies beyond is left out, and the surface is open where it was cut. A surface that lies in the
+/// box stays as it is; so does one that has nothing in it.
+TriangleMesh clipped(const TriangleMesh& mesh, const Vec3& low, const Vec3& high);
+
+/// Largest distance of a triangle's corner from the mean of its corners.
+double largest_reach(const TriangleMesh& mesh);
+
+/// The walls along z of a block, which stands on a rectangle across z, without its ends: strips of
+/// triangles that reach at most so far from their middles, around z = 0.
+/// @param block  box_surface() of two corners
+/// @param reach  as largest_reach(), positive
+TriangleMesh short_walls(const TriangleMesh& block, double reach);
+
+}  // namespace lbm
