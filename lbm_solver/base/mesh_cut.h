@@ -6,7 +6,8 @@
 namespace lbm {
 
 /// The part of a surface that lies in a box: triangles that cross its sides are cut there, what
-/// lies beyond is left out, and the surface is open where it was cut. A surface that lies in the
+/// lies beyond is left out, and the surface is open where it was cut. Two triangles that make a
+/// long quadrangle become pieces along it: LIGGGHTS refuses sharp ones. A surface that lies in the
 /// box stays as it is; so does one that has nothing in it.
 TriangleMesh clipped(const TriangleMesh& mesh, const Vec3& low, const Vec3& high);
 

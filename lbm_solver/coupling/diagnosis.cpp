@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "lbm_solver/coupling/solid_overlap.h"
 #include "lbm_solver/solver/driven_speed.h"
 #include "protocol/wire/clumps.h"
 
@@ -66,6 +67,42 @@ Near nearest(const Scene& s, const std::optional<Vec3>& at,
   return near;
 }
 
+/// What a particle lies in deeply beside other particles.
+std::vector<SolidOverlap> deep_in(const Scene& s, const protocol::Particle& p, double time) {
+  Vec3 centre(p.state.x[0], p.state.x[1], s.box.dimension == 3 ? p.state.x[2] : 0.0);
+  for (int k = 0; k < s.box.dimension; ++k)  // the solid wraps it now and then only
+    if (s.box.sides[k] == SideKind::Periodic)
+      centre[k] -= s.box.size[k] * std::floor((centre[k] - s.box.origin[k]) / s.box.size[k]);
+  auto found = solid_overlaps(s, centre, p.shape.radius, time);
+  std::erase_if(found, [&](const auto& o) { return o.depth < kDeepOverlap * p.shape.radius; });
+  return found;
+}
+
+/// Says so, and what to do: it is pressed between two, by what moves, or began there.
+std::string overlap_text(const std::vector<SolidOverlap>& in, double radius, std::string& cure) {
+  const auto name = [&](const SolidOverlap& o) {
+    return fmt::format("{:.3g} of its radius deep in {}{}{}", o.depth / radius, o.what,
+                       o.moves ? ", which moves" : "",
+                       o.depth > radius ? " (its centre is inside)" : "");
+  };
+  std::string text = " It lies " + name(in[0]);
+  if (in.size() > 1) text += ", and " + name(in[1]);
+  if (in.size() > 1 && (in[0].moves || in[1].moves))
+    cure =
+        "it is crushed between the two: leave room for a particle between what moves and what it "
+        "comes to, or let it come slower";
+  else if (in[0].moves)
+    cure =
+        "what moves has run into it: let it move slower, take stiffer contacts "
+        "(particles.contact_stiffness and the script's) or more coupling.substeps";
+  else
+    cure =
+        "its contact throws it out: start particles outside of obstacles and walls (the script may "
+        "place them elsewhere than the scene); where they were pressed in, take stiffer contacts "
+        "(particles.contact_stiffness and the script's) or more coupling.substeps";
+  return text + ".";
+}
+
 double solid_part(const Scene& s, const std::vector<protocol::Particle>& particles) {
   double volume = 0.0, box = 1.0;
   for (const auto& p : particles) volume += particle_volume(s, 2.0 * p.shape.radius);
@@ -95,7 +132,7 @@ std::optional<double> SpeedRecord::growth() const {
   return std::pow(ratio, 1.0 / static_cast<double>(steps_between()));
 }
 
-std::string diagnosis(const Scene& s, const Plan& plan, const std::optional<Vec3>& at,
+std::string diagnosis(const Scene& s, const Plan& plan, double time, const std::optional<Vec3>& at,
                       const SpeedRecord& record, const std::vector<protocol::Particle>& particles) {
   std::string text, cure;
   const Near near = nearest(s, at, particles);
@@ -116,7 +153,10 @@ std::string diagnosis(const Scene& s, const Plan& plan, const std::optional<Vec3
   else if (near.particle)
     text += fmt::format(" It is particle {}.", near.particle->state.id);
   const std::vector<Drive> driven = drives(s);
-  if (near.partner && near.overlap > kDeepOverlap && beside) {
+  const auto in = beside ? deep_in(s, *near.particle, time) : std::vector<SolidOverlap>();
+  if (!in.empty() && in[0].depth > near.overlap * near.particle->shape.radius) {
+    text += overlap_text(in, near.particle->shape.radius, cure);
+  } else if (near.partner && near.overlap > kDeepOverlap && beside) {
     text += fmt::format(" It overlaps particle {} by {:.3g} of a radius.", near.partner->state.id,
                         near.overlap);
     cure =

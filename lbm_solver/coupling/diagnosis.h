@@ -32,11 +32,13 @@ class SpeedRecord {
 };
 
 /// Why something moves too fast, and what to do about it, in sentences: which particles are near
-/// and how deep they overlap, whether the speed grew smoothly or by a factor a step, and what in
-/// the scene drives.
+/// and how deep they lie in others, in obstacles and in walls, whether the speed grew smoothly or
+/// by a factor a step, and what in the scene drives.
+/// @param time       [s], at which obstacles are where they are
 /// @param at         where the fluid is too fast [m]; absent: it is a particle, the fastest one
 /// @param particles  all of the box, or none
-std::string diagnosis(const Scene& scene, const Plan& plan, const std::optional<Vec3>& at,
-                      const SpeedRecord& record, const std::vector<protocol::Particle>& particles);
+std::string diagnosis(const Scene& scene, const Plan& plan, double time,
+                      const std::optional<Vec3>& at, const SpeedRecord& record,
+                      const std::vector<protocol::Particle>& particles);
 
 }  // namespace lbm

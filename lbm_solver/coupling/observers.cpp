@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/coupling/scene_parameters.h"
 #include "lbm_solver/coupling/shown_cells.h"
 
 namespace lbm {
@@ -53,32 +54,6 @@ std::string solid_text(const Particles* particles) {
   const std::string text =
       particles && particles->report() ? describe(*particles->report()) : std::string();
   return text.empty() ? text : ", " + text;
-}
-
-/// Numbers of a scene and its plan, for the summary.
-std::map<std::string, double> scene_parameters(const Scene& scene, const Plan& plan) {
-  std::map<std::string, double> parameters{{"cell", plan.units.dx},
-                                           {"time_step", plan.units.dt},
-                                           {"interval", plan.interval()},
-                                           {"tau", plan.kernel.parameters.tau},
-                                           {"density", scene.fluid.density},
-                                           {"kinematic_viscosity", scene.fluid.viscosity},
-                                           {"gravity_x", scene.fluid.gravity.x()},
-                                           {"gravity_y", scene.fluid.gravity.y()},
-                                           {"depth", scene.box.depth},
-                                           {"box_x", scene.box.size.x()},
-                                           {"box_y", scene.box.size.y()},
-                                           {"velocity_scale", scene.fluid.velocity_scale}};
-  if (scene.box.dimension == 3) {
-    parameters["box_z"] = scene.box.size.z();
-    parameters["gravity_z"] = scene.fluid.gravity.z();
-  }
-  if (scene.particles) {
-    parameters["diameter"] = scene.particles->diameter.hi;
-    parameters["particle_density"] = scene.particles->density.hi;
-    parameters["cells_per_diameter"] = plan.cells_per_diameter;
-  }
-  return parameters;
 }
 
 }  // namespace
@@ -262,8 +237,8 @@ void Observers::guard(std::int64_t state, Fluid& fluid, const Particles* particl
     auto all = particles ? particles->gather().particles : std::vector<protocol::Particle>();
     hide_hulls(all);
     const bool fluid_is_fastest = !(e.finite && particle > e.max_speed);
-    return diagnosis(scene_, plan_, fluid_is_fastest ? std::optional(x) : std::nullopt, speeds_,
-                     all);
+    return diagnosis(scene_, plan_, time_of(state),
+                     fluid_is_fastest ? std::optional(x) : std::nullopt, speeds_, all);
   };
   if (!e.finite)
     throw NumericsError(

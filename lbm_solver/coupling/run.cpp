@@ -13,6 +13,7 @@
 #include "lbm_solver/coupling/lubrication.h"
 #include "lbm_solver/coupling/particle_relay.h"
 #include "lbm_solver/coupling/run_state.h"
+#include "lbm_solver/coupling/start_check.h"
 #include "lbm_solver/coupling/stop_times.h"
 #include "lbm_solver/field/moved_record.h"
 #include "lbm_solver/io/checkpoint.h"
@@ -130,6 +131,7 @@ class CoupledRun {
       particles_.tell(arrival.report);
       if (particles_.has_clumps()) expect_takes_clumps(plan_.scheme);
       if (scene_.coupling->carry_weight) carry_weight(interval);
+      if (interval == 0) warn_of_starts(scene_, plan_, *fluid_, particles_, log_);
       place(0);
       observers_.at_state(interval, *fluid_, &particles_, last);
       clock_.charge("output");

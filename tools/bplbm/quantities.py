@@ -1,4 +1,5 @@
-"""Numbers that every run has, without a plot.py: of its particles and bonds, at the end and at most."""
+"""Numbers that every run has, without a plot.py: of its particles and bonds, at the end and at most; of a flow past solids
+its flux and the permeability."""
 
 import h5py
 import numpy as np
@@ -6,6 +7,7 @@ import numpy as np
 from bplbm.results import quantity, read_table
 
 ALONE = -1  # the carrier of what is no part of a clump
+STEADY = 0.01  # part by which a flux changes from the frame before the last to the last
 
 
 def default_quantities(run):
@@ -20,6 +22,27 @@ def default_quantities(run):
         table = read_table(probes)
         whole = ~np.isin(table["id"], spheres_of_clumps(run))
         found += of_particles({name: column[whole] for name, column in table.items()}, box, run.summary["physical_seconds"])
+    return found + of_flux(run)
+
+
+def of_flux(run):
+    """Mean velocity over the box in the last frame of a Run whose fluid a steady force, or a pressure difference across
+    periodic sides, drives past solids, and the permeability k = ν U/g that it gives where it no longer changes."""
+    p = run.parameters
+    drive = {axis: p.get(f"body_force_{axis}", 0.0) + p.get(f"pressure_jump_{axis}", 0.0) / (p.get("density", 1.0) * p.get(f"box_{axis}", 1.0))
+             for axis in "xyz"}
+    if not any(drive.values()) or not (run.folder / "fields.h5").is_file():
+        return []
+    frames = run.frames()
+    flux = dict(zip("xyz", run.flux(frames[-1][1]))) if frames else {}
+    before = dict(zip("xyz", run.flux(frames[-2][1]))) if len(frames) > 1 else {}
+    found = []
+    for axis, mean in flux.items():
+        if not drive[axis]:
+            continue
+        found.append(quantity(f"mean velocity along {axis}, solids included", mean, "m/s"))
+        if abs(mean - before.get(axis, 0.0)) < STEADY * abs(mean):
+            found.append(quantity(f"permeability along {axis}", p["kinematic_viscosity"] * mean / drive[axis], "m²"))
     return found
 
 

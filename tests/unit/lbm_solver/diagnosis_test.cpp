@@ -20,6 +20,7 @@ struct Situation {
   std::vector<double> speeds{0.1, 0.11};  ///< of two looks, 50 steps apart
   std::optional<Vec3> at = Vec3(0.01, 0.03, 0.0);
   std::vector<std::array<double, 2>> discs;
+  double time = 0.1;
 };
 
 std::string said(const Situation& now) {
@@ -38,7 +39,7 @@ std::string said(const Situation& now) {
     p.shape.radius = 1.25e-3;
     particles.push_back(p);
   }
-  return diagnosis(scene, make_plan(scene), now.at, record, particles);
+  return diagnosis(scene, make_plan(scene), now.time, now.at, record, particles);
 }
 
 void expect_says(const Situation& now, const std::vector<std::string>& words) {
@@ -53,6 +54,25 @@ TEST(Diagnosis, OfDiscsThatOverlap) {
                "start particles apart"});
   expect_says({.at = std::nullopt, .discs = {{0.01, 0.03}, {0.0101, 0.0281}}},
               {"It is particle 2.", "overlaps particle 1"});
+}
+
+// The disc's radius is 1.25 mm.
+TEST(Diagnosis, OfADiscInAWallOrAnObstacle) {
+  expect_says({.at = Vec3(0.001, 0.03, 0.0), .discs = {{0.0005, 0.03}}},
+              {"It lies 0.6 of its radius deep in the wall \"left\".",
+               "start particles outside of obstacles and walls"});
+  const std::string block = "[[obstacle]]\nfrom = [0.005, 0.02]\nto = [0.015, 0.03]\n";
+  expect_says({.to = block + "[run]", .at = Vec3(0.01, 0.031, 0.0), .discs = {{0.01, 0.03025}}},
+              {"It lies 0.8 of its radius deep in the 1. obstacle.", "its contact throws it out"});
+  const std::string moving = block + "motion = \"linear\"\nvelocity = [-0.04, 0.0]\n[run]";
+  expect_says({.to = moving, .at = Vec3(0.001, 0.025, 0.0), .discs = {{0.001, 0.025}}},
+              {"It lies 1 of its radius deep in the 1. obstacle (mesh of a block), which moves",
+               "and 0.2 of its radius deep in the wall \"left\"", "it is crushed between the two"});
+  expect_says({.to = moving, .at = Vec3(0.01, 0.025, 0.0), .discs = {{0.01, 0.025}}, .time = 0.0},
+              {"5 of its radius deep", "(its centre is inside)", "what moves has run into it"});
+  EXPECT_EQ(said({.to = moving, .at = Vec3(0.01, 0.0313, 0.0), .discs = {{0.01, 0.0313}}})
+                .find("deep in"),
+            std::string::npos);
 }
 
 TEST(Diagnosis, OfAParticleThatIsTooFastByItself) {

@@ -168,6 +168,22 @@ class Page(Output):
                 frame["particle_carrier"] = np.array([-1.0, 1.0])  # the second is a sphere of the first
         self.assertEqual(default_quantities(run)[1]["value"], 1)
 
+    def test_a_driven_flow_past_solids_has_its_permeability(self):
+        run = self.write(2)
+        run.parameters.update({"body_force_x": 0.5, "kinematic_viscosity": 1e-6, "density": 1000.0})
+        self.assertNotIn("permeability along x", [q["name"] for q in default_quantities(run)])
+        with h5py.File(self.out / "fields.h5", "a") as f:
+            for frame in f.values():
+                frame.attrs["flux_x"], frame.attrs["flux_y"] = 2e-3, 0.0
+        found = {q["name"]: q["value"] for q in default_quantities(run)}
+        self.assertEqual(found["mean velocity along x, solids included"], 2e-3)
+        self.assertAlmostEqual(found["permeability along x"], 4e-9, 20)
+        self.assertNotIn("permeability along y", found)
+        last = run.frames()[-1][1]
+        with h5py.File(self.out / "fields.h5", "a") as f:
+            f[last].attrs["flux_x"] = 1e-3  # it still grows
+        self.assertNotIn("permeability along x", [q["name"] for q in default_quantities(run)])
+
     def test_both_waiting_at_once_is_said(self):
         self.assertIsNone(launcher.hint_of_waiting(0.5, 9.6, 10.0))  # in turns
         self.assertIsNone(launcher.hint_of_waiting(0.9, 0.9, 1.0))  # too short to matter

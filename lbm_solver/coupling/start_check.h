@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "lbm_solver/coupling/particles.h"
+#include "lbm_solver/io/log.h"
+#include "lbm_solver/solver/fluid.h"
+#include "lbm_solver/solver/plan.h"
+
+namespace lbm {
+
+/// Warns of particles that begin deep in an obstacle or a wall: where a script has placed them, no
+/// check of the scene can know. Before the first particles are placed in the fluid, so that its
+/// cells show obstacles alone. Collective.
+void warn_of_starts(const Scene& scene, const Plan& plan, const Fluid& fluid,
+                    const Particles& particles, Log& log);
+
+}  // namespace lbm
