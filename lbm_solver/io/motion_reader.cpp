@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "lbm_solver/io/text_table.h"
@@ -77,10 +79,28 @@ void read_axis(TableReader& t, int dimension, ReadMotion& read) {
   m.axis.normalize();
 }
 
+/// Keys of a motion without its kind.
+void check_forgotten(TableReader& t) {
+  constexpr std::pair<const char*, const char*> kinds[] = {
+      {"velocity", "linear"},       {"angular_velocity", "rotation"},
+      {"amplitude", "oscillation"}, {"angular_amplitude", "oscillation"},
+      {"frequency", "oscillation"}, {"motion_table", "table"},
+      {"axis", "rotation"},         {"about", "rotation"},
+      {"surface_only", "rotation"}};
+  for (const auto& [key, kind] : kinds)
+    if (t.has(key))
+      t.fail("motion", fmt::format("is missing beside {}: the obstacle would not move", key),
+             fmt::format("give motion = \"{}\"{}, or leave {} out", kind,
+                         std::string(key) == "surface_only" ? ", or another" : "", key));
+}
+
 }  // namespace
 
 std::optional<ReadMotion> read_motion(TableReader& t, const std::string& scene_file, int d) {
-  if (!t.has("motion")) return std::nullopt;
+  if (!t.has("motion")) {
+    check_forgotten(t);
+    return std::nullopt;
+  }
   ReadMotion read;
   MotionScene& m = read.motion;
   const std::string kind =

@@ -157,8 +157,14 @@ GreyImage cut_out(TableReader& t, GreyImage image, Cell3 from, Cell3 to) {
   return part;
 }
 
+/// What levels of an image become, and what is to be said where all become the same.
+struct FractionRule {
+  std::function<float(float)> fraction;
+  std::string key;
+};
+
 /// How levels become solid fractions.
-std::function<float(float)> fraction_rule(TableReader& t) {
+FractionRule fraction_rule(TableReader& t) {
   const auto threshold = t.optional_number("threshold", {}, "");
   const bool above = t.choice_or("solid", "above", {"above", "below"}) == "above";
   const std::vector<double> levels = t.numbers_or("grey_levels", {}, {}, "");
@@ -167,21 +173,45 @@ std::function<float(float)> fraction_rule(TableReader& t) {
            "give a threshold, or grey_levels = [of fluid, of solid]");
   if (threshold) {
     const double at = *threshold;
-    return [at, above](float v) { return (v >= at) == above ? 1.0F : 0.0F; };
+    return {[at, above](float v) { return (v >= at) == above ? 1.0F : 0.0F; }, "threshold"};
   }
   if (levels.size() != 2 || levels[0] == levels[1])
     t.fail("grey_levels", "is no pair of different levels", "give [of fluid, of solid]");
   const double fluid = levels[0], slope = 1.0 / (levels[1] - levels[0]);
-  return [fluid, slope](float v) {
-    return static_cast<float>(std::clamp((v - fluid) * slope, 0.0, 1.0));
-  };
+  return {[fluid, slope](float v) {
+            return static_cast<float>(std::clamp((v - fluid) * slope, 0.0, 1.0));
+          },
+          "grey_levels"};
+}
+
+/// Refuses a rule by which an image of several levels is all fluid, or all solid.
+void check_levels(const TableReader& t, const GreyImage& image, const FractionRule& rule) {
+  const auto [low, high] = std::ranges::minmax(image.levels);
+  const float first = rule.fraction(low), last = rule.fraction(high);
+  if (low == high || first != last || (first != 0.0F && first != 1.0F)) return;
+  t.fail(rule.key,
+         fmt::format("makes all of the image {}: its levels are {:.6g} … {:.6g}",
+                     first == 0.0F ? "fluid" : "solid", low, high),
+         "give levels between these; a file of 16 bits has other numbers than one of 8");
+}
+
+/// Refuses keys of another kind of file.
+void check_layout(TableReader& t, const std::string& path) {
+  const std::string kind = std::filesystem::path(path).extension().string();
+  const std::string name = std::filesystem::path(path).filename().string();
+  for (const char* key : {"raw_size", "raw_type"})
+    if (t.has(key) && kind != ".raw")
+      t.fail(key, "is for .raw files, and \"" + name + "\" says itself what it holds",
+             "leave it out; a part of an image is cut with cut_from and cut_to");
+  if (t.has("dataset") && kind != ".h5" && kind != ".hdf5")
+    t.fail("dataset", "is for .h5 files, and \"" + name + "\" holds one array", "leave it out");
 }
 
 ImageScene read_image(TableReader& t, const std::string& scene_file, const BoxScene& box) {
   ImageScene scene;
   scene.voxel = t.number("voxel", Bounds::positive(), "m");
   scene.at = t.has("at") ? t.vector("at", box.dimension, "[m], the lower corner") : box.origin;
-  const auto rule = fraction_rule(t);
+  const FractionRule rule = fraction_rule(t);
   ImageLayout layout;
   layout.raw_size = whole_numbers(t, "raw_size", box.dimension, 1).value_or(Cell3{0, 0, 0});
   layout.raw_type = t.text_or("raw_type", "");
@@ -190,12 +220,20 @@ ImageScene read_image(TableReader& t, const std::string& scene_file, const BoxSc
   const auto to = whole_numbers(t, "cut_to", box.dimension, 0);
   const std::string path = file_of(t, "image", scene_file);
   scene.file = path;
+  check_layout(t, path);
   GreyImage image = read_file(t, "image", path, [&] { return read_image(path, layout); });
   if (box.dimension == 2 && image.size[2] > 1)
-    t.fail("image", fmt::format("has {} slices, the box two dimensions", image.size[2]),
-           "give one slice, or a box in three dimensions");
+    t.fail("image",
+           image.size[0] <= 4  // red, green, blue and perhaps how opaque, of each pixel
+               ? fmt::format("is an array of {} × {} × {} numbers, which looks like a picture with "
+                             "colours, and the box has two dimensions",
+                             image.size[2], image.size[1], image.size[0])
+               : fmt::format("has {} slices, the box two dimensions", image.size[2]),
+           image.size[0] <= 4 ? "make it grey, [y][x]: array.mean(axis=2)"
+                              : "give one slice, or a box in three dimensions");
+  check_levels(t, image, rule);
   image = cut_out(t, std::move(image), from.value_or(Cell3{0, 0, 0}), to.value_or(image.size));
-  for (float& level : image.levels) level = rule(level);
+  for (float& level : image.levels) level = rule.fraction(level);
   scene.voxels = std::make_shared<const Voxels>(Voxels{image.size, std::move(image.levels)});
   return scene;
 }

@@ -17,6 +17,7 @@
 #include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/motion_check.h"
 #include "lbm_solver/solver/place_check.h"
+#include "lbm_solver/solver/shape_check.h"
 #include "lbm_solver/solver/table_check.h"
 
 namespace lbm {
@@ -314,6 +315,7 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_motions(s, plan);
   check_idle_keys(s, plan);
   check_overlaps(s, plan);
+  check_shapes(s, plan);
   check_starts_in_shapes(s, plan);
   check_tables(s, plan);
   check_periodic_sensors(s, plan);

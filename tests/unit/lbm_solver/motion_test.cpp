@@ -7,6 +7,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/base/mass_moments.h"
+#include "lbm_solver/base/mesh_cut.h"
 #include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/inner_fluid.h"
 #include "lbm_solver/coupling/motion_words.h"
@@ -113,7 +114,10 @@ TEST_F(Motions, ThatAreWrongAreNamed) {
           {"spin stands beside motion"});
   refused(2, kDisc + "motion = \"oscillation\"\nfrequency = 1",
           {"amplitude is missing or 0", "angular_amplitude"});
-  refused(2, kDisc + "velocity = [0.1, 0.0]", {"velocity"});  // without a motion
+  refused(2, kDisc + "velocity = [0.1, 0.0]",
+          {"obstacle.motion is missing beside velocity", "give motion = \"linear\""});
+  refused(3, kBox + "angular_velocity = 1\naxis = [0, 0, 1]",
+          {"motion is missing beside angular_velocity", "give motion = \"rotation\""});
   refused(2, kDisc + "motion = \"linear\"\nvelocity = [1.0, 0.0]",
           {"the 1. obstacle's motion makes 1 m/s", "a run stops at 0.2"});
   refused(2, kDisc + "motion = \"rotation\"\nangular_velocity = 100.0\nabout = [0.0, 0.0]",
@@ -277,6 +281,82 @@ TEST_F(Motions, ThatTheSolidCannotFollowAreRefusedInACoupledScene) {
   // rad/s, so that a grain of 1 mm has the wall's speed where it touches: 2 × 3/(3 - 1)
   EXPECT_EQ(has(kDisc + "hollow = true\nmotion = \"rotation\"\nangular_velocity = 2", "disc1_wall"),
             "zcylinder 0.003 0.01 0.008 shear x 3");
+}
+
+const std::string kWide = "from = [0.007, 0.008]\nto = [0.012, 0.0125]\n";
+
+// What LIGGGHTS would stop at, without a word of why.
+TEST_F(Motions, ThatLeaveTheBoxOfTheSolidAreNamed) {
+  extra_ = "[particles]\ndiameter = 0.002\ndensity = 2000.0\n[coupling]\n";
+  const auto said = [&](int dimension, const std::string& obstacle) {
+    std::string all;
+    for (const std::string& w : make_plan(read(dimension, obstacle)).warnings) all += w + "\n";
+    return all.find("reaches through") == std::string::npos ? "" : all;
+  };
+  EXPECT_EQ(said(2, kWide + "motion = \"rotation\"\nangular_velocity = 0.5\n"), "");
+  warned(2, kWide + "motion = \"linear\"\nvelocity = [-0.01, 0]",
+         "the 1. obstacle reaches through the wall \"left\" at 0.70");
+  warned(2, kWide + "motion = \"linear\"\nvelocity = [0, 0.01]",
+         "reaches through the wall \"top\" at 0.75");
+  warned(3, kBox + "motion = \"linear\"\nvelocity = [0, 0, -0.0099]",
+         "\"left the domain\"), and grains between the two are crushed");
+}
+
+TEST_F(Motions, OfABlockInAThinLayerAreOfferedInShortPieces) {
+  extra_ = "[particles]\ndiameter = 0.002\ndensity = 2000.0\n[coupling]\n";
+  const std::string text =
+      test::read_file(scene(2, kWide + "motion = \"rotation\"\nangular_velocity = 0.5\n"));
+  const auto with_depth = [&](const std::string& depth) {
+    return read_scene({folder_.write(
+        "scene.toml", test::replaced(text, "[fluid]", "depth = " + depth + "\n[fluid]"))});
+  };
+  const auto too_thin = [](const Scene& s) {
+    std::string all;
+    for (const std::string& w : make_plan(s).warnings)
+      if (w.find("is too thin for the 1. obstacle") != std::string::npos) all += w;
+    return all;
+  };
+  for (const char* depth : {"0.02", "0.005", "0.002"}) {
+    const Scene s = with_depth(depth);
+    EXPECT_EQ(too_thin(s), "") << depth;
+    write_meshes(s, folder_.path());
+    const TriangleMesh offered = read_stl(folder_.path() + "/mesh1.stl");
+    const auto [low, high] = bounds(offered);
+    EXPECT_LT(largest_reach(offered) + 0.6 * 0.002, s.box.depth) << depth;
+    EXPECT_LT((Vec3(low.x(), low.y()) - s.obstacles[0].from).norm(), 1e-12);
+    EXPECT_LT((Vec3(high.x(), high.y()) - s.obstacles[0].to).norm(), 1e-12);
+    for (const auto& t : offered.triangles) {  // they face outwards
+      const Vec3 middle =
+          (offered.vertices[t[0]] + offered.vertices[t[1]] + offered.vertices[t[2]]) / 3.0;
+      EXPECT_GT(offered.area_vector(t).dot(middle - 0.5 * (low + high)), 0.0);
+    }
+    // as before where the layer is thick
+    EXPECT_EQ(offered.triangles.size() == 12, std::string(depth) == "0.02") << depth;
+  }
+  EXPECT_NE(too_thin(with_depth("0.0015")).find("take a depth of at least 0.002 m"),
+            std::string::npos);
+}
+
+// What stands beyond the box is cut off for the solid, in a coupled scene; the fluid keeps it.
+TEST_F(Motions, AreNoneOfWhatIsCutAtTheBox) {
+  const std::string rod =
+      "from = [-0.005, 0.01, 0.01]\nto = [0.03, 0.012, 0.01]\ndiameter = 0.004\n";
+  extra_ = "[particles]\ndiameter = 0.002\ndensity = 2000.0\n[coupling]\n";
+  const Scene s = read(3, rod);
+  write_meshes(s, folder_.path());
+  const TriangleMesh cut = read_stl(folder_.path() + "/mesh1.stl");
+  const auto [low, high] = bounds(cut);
+  EXPECT_EQ(low.x(), 0.0);
+  EXPECT_EQ(high.x(), 0.02);
+  double area = 0.0;
+  for (const auto& t : cut.triangles) area += 0.5 * cut.area_vector(t).norm();
+  // of the sides of the rod without its ends; ends across x: 1/cos longer there
+  const double slant = std::hypot(1.0, 0.002 / 0.035);
+  EXPECT_NEAR(area / (pi * 0.004 * 0.02 * slant), 1.0, 1e-3);
+  extra_ = "";
+  const Scene alone = read(3, rod);
+  write_meshes(alone, folder_.path());
+  EXPECT_LT(bounds(read_stl(folder_.path() + "/mesh1.stl"))[0].x(), -0.004);
 }
 
 }  // namespace

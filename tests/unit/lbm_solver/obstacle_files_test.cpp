@@ -122,6 +122,7 @@ TEST_F(ObstacleFiles, ABadMeshIsDescribed) {
   for (auto& t : (bad = box).triangles) std::swap(t[1], t[2]);
   refused(3, mesh(bad), {"face inwards"});
   refused(3, mesh(test::box_mesh(1e3 * kLow, 1e3 * kHigh)), {"750 times the box", "scale = 0.001"});
+  refused(3, mesh(box) + "scale = 0.001", {"the 1. obstacle's mesh", "no cell sees it"});
   refused(3, mesh(box) + "move = [0.1, 0, 0]", {"outside of the box", "give move"});
   refused(2, mesh(box), {"three dimensions only", "as an image"});
   refused(3, mesh(box) + "rotate = [0, 0, 0, 30]", {"no axis and angle"});
@@ -203,10 +204,58 @@ TEST_F(ObstacleFiles, ABadImageIsDescribed) {
           {"nothing lies between"});
   folder_.write("rock.npy", "no array");
   refused(3, "image = \"rock.npy\"\nvoxel = 0.001\nthreshold = 1", {"is no .npy file"});
+  refused(3, raw + "dataset = \"/rock\"", {"dataset is for .h5 files"});
+  refused(3, test::replaced(raw, "rock.raw", "rock.npy"),
+          {"raw_size is for .raw files", "\"rock.npy\" says itself what it holds"});
+  refused(3, test::replaced(raw, "= 20", "= 200"),
+          {"threshold makes all of the image fluid", "its levels are 0 … 23"});
+  refused(3, test::replaced(raw, "= 20", "= 0"), {"makes all of the image solid"});
+  refused(3, std::string(kRaw) + "grey_levels = [100, 200]",
+          {"grey_levels makes all of the image fluid"});
   folder_.write("rock.png", "no picture");
   refused(2, "image = \"rock.png\"\nvoxel = 0.001\nthreshold = 1", {"rock.png"});
   folder_.write("rock.tif", "no picture");
   refused(2, "image = \"rock.tif\"\nvoxel = 0.001\nthreshold = 1", {"rock.tif"});
+}
+
+/// All warnings of a scene, a line each.
+std::string warnings_of(const Scene& s) {
+  std::string all;
+  for (const std::string& w : make_plan(s).warnings) all += w + "\n";
+  return all;
+}
+
+TEST_F(ObstacleFiles, AnImageThatLeavesAGapIsNamed) {
+  folder_.write("rock.raw", bytes(24));
+  const std::string raw = std::string(kRaw) + "threshold = 20\n";
+  EXPECT_NE(warnings_of(read(3, raw))
+                .find("the image of the 1. obstacle fills 0.004 of 0.008 m along x, 0.003 of"),
+            std::string::npos);
+  EXPECT_EQ(warnings_of(read(3, raw + "at = [0, 0, 0]")), "");
+}
+
+// A wall of voxels across x with a gap at (4, 7), or where that is closed none.
+TEST_F(ObstacleFiles, AnImageWithoutAWayForTheFlowIsNamed) {
+  std::string levels(64, '\0');
+  for (int y = 0; y < 8; ++y) levels[8 * y + 4] = '\1';
+  const std::string keys =
+      "image = \"rock.raw\"\nraw_size = [8, 8]\nraw_type = \"uint8\"\nvoxel = 0.001\n"
+      "threshold = 1\n";
+  const auto said = [&](const std::string& voxels, const std::string& axis) {
+    folder_.write("rock.raw", voxels);
+    const std::string text = test::read_file(scene(2, keys));
+    return warnings_of(read_scene({folder_.write(
+        "scene.toml",
+        test::replaced(
+            text, "\n[fluid]",
+            "\nsides_x = \"periodic\"\nsides_y = \"periodic\"\n[fluid]\nbody_force = " + axis))}));
+  };
+  EXPECT_NE(said(levels, "[1e-3, 0]").find("obstacles close the box along x, and fluid.body_force"),
+            std::string::npos);
+  EXPECT_EQ(said(levels, "[0, 1e-3]").find("close the box"), std::string::npos);
+  std::string open = levels;
+  open[8 * 7 + 4] = '\0';
+  EXPECT_EQ(said(open, "[1e-3, 0]").find("close the box"), std::string::npos);
 }
 
 /// A .npy file. @param descr  e.g. <f4
@@ -233,6 +282,8 @@ TEST_F(ObstacleFiles, AnArrayOfNumpyIsRead) {
   refused(2, keys, {"numbers of type '<c8'", "float32"});
   folder_.write("rock.npy", npy("<f4", "(2, 4)", data));
   refused(2, keys, {"has 24 bytes of data where 32 are due"});
+  folder_.write("rock.npy", npy("<f4", "(2, 1, 3)", data));
+  refused(2, keys, {"array of 2 × 1 × 3 numbers", "a picture with colours", "mean(axis=2)"});
   folder_.write("rock.npy", npy("<f4", "(6,)", data));
   refused(2, keys, {"array of 1 dimensions"});
   const float nan[] = {0.0F, 0.25F, 0.5F, 1.0F, std::nanf(""), 0.0F};

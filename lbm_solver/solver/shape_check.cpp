@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "lbm_solver/solver/shape_check.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lbm_solver/base/errors.h"
+#include "lbm_solver/immersed/geometry.h"
+
+namespace lbm {
+namespace {
+
+constexpr double kCovered = 1.0 - 1e-6;  // of a cell that lets nothing through
+
+/// A mesh in a unit so small that no cell sees it.
+void check_mesh_size(const Scene& s, const Plan& plan) {
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
+    const ObstacleScene& o = s.obstacles[i];
+    if (!o.mesh) continue;
+    const auto [low, high] = bounds(*o.mesh->surface);
+    const double size = (high - low).maxCoeff();
+    if (size >= plan.units.dx * (1.0 - 1e-9)) continue;
+    throw InputError(
+        fmt::format("{}: the {}. obstacle's mesh", s.file, i + 1),
+        fmt::format("is {:.3g} m large, {:.2g} of a cell: no cell sees it", size,
+                    size / plan.units.dx),
+        "are its lengths in metres already? then leave scale out (0.001 is for a file in mm)");
+  }
+}
+
+/// Whether the scene says where an image begins.
+bool is_placed(const Scene& s, std::size_t obstacle) {
+  return s.settings.contains(fmt::format("obstacle.{}.at", obstacle + 1));
+}
+
+/// An image that begins at the box's corner since nothing is said, and ends before the box does.
+void check_gaps(const Scene& s, Plan& plan) {
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
+    const auto& image = s.obstacles[i].image;
+    if (!image || is_placed(s, i)) continue;
+    std::string gaps;
+    for (int k = 0; k < s.box.dimension; ++k) {
+      const double fills = image->voxels->size[k] * image->voxel;
+      if (fills < s.box.size[k] - 0.5 * plan.units.dx)
+        gaps += fmt::format("{}{:.4g} of {:.4g} m along {}", gaps.empty() ? "" : ", ", fills,
+                            s.box.size[k], "xyz"[k]);
+    }
+    if (!gaps.empty())
+      plan.warnings.push_back(
+          fmt::format("the image of the {}. obstacle fills {} only, and fluid lies beside it: is "
+                      "voxel = {:.4g} m right? if it is, say with at = … where the image begins",
+                      i + 1, gaps, image->voxel));
+  }
+}
+
+/// What drives a flow along an axis, as a message says it; empty: nothing.
+std::string drive_along(const Scene& s, int axis) {
+  if (s.box.sides[axis] == SideKind::Periodic) {
+    if (s.fluid.body_force[axis] != 0.0) return "fluid.body_force";
+    if (s.box.pressure_jump[axis] != 0.0) return "box.pressure_jump";
+    return s.fluid.flow && s.fluid.flow->axis == axis ? "fluid.flow_rate" : "";
+  }
+  const auto opens = [&](int high) {
+    return std::ranges::any_of(s.boundaries, [&](const BoundaryScene& b) {
+      const bool through = b.kind != BoundaryScene::Kind::Velocity || b.velocity[axis] != 0.0;
+      return axis_of(b.side) == axis && is_high(b.side) == (high == 1) && through;
+    });
+  };
+  return opens(0) && opens(1) ? "the boundary conditions" : "";
+}
+
+/// Cells of the box that obstacles at rest cover whole.
+class Covered {
+ public:
+  Covered(const Scene& s, const Plan& plan) : domain_(plan.domain), n_(plan.domain.cells()) {
+    std::vector<float> fraction(static_cast<std::size_t>(n_[0]) * n_[1] * n_[2], 0.0F);
+    const auto add = [&](const Geometry& shape) {
+      fill(shape, domain_, Block::whole(domain_), {}, [&](const FractionSpan& span) {
+        float* row = &fraction[number({span.x, span.y, span.z})];
+        for (std::size_t x = 0; x < span.fractions.size(); ++x)
+          row[x] += static_cast<float>(span.fractions[x]);
+      });
+    };
+    const std::vector<Geometry> shapes = obstacle_shapes(s, plan);
+    std::size_t next = 0;
+    for (const ObstacleScene& o : s.obstacles) {
+      if (o.body() || o.block()) continue;
+      if (const Geometry& shape = shapes[next++]; !o.motion) add(shape);
+    }
+    for (const CellBox& block : obstacle_blocks(s, plan)) add({block});
+    for (const float f : fraction) whole_.push_back(f >= kCovered);
+  }
+
+  /// Whether fluid cells, as populations go from one to the next, join both ends of an axis.
+  bool leaves_a_way(int axis) const {
+    std::vector<bool> seen = whole_;
+    std::vector<Cell3> next;
+    const auto visit = [&](const Cell3& c) {
+      if (seen[number(c)]) return;
+      seen[number(c)] = true;
+      next.push_back(c);
+    };
+    Cell3 end = n_;
+    end[axis] = 1;
+    for (int z = 0; z < end[2]; ++z)
+      for (int y = 0; y < end[1]; ++y)
+        for (int x = 0; x < end[0]; ++x) visit({x, y, z});
+    while (!next.empty()) {
+      const Cell3 cell = next.back();
+      next.pop_back();
+      if (cell[axis] == n_[axis] - 1) return true;
+      each_neighbour(cell, axis, visit);
+    }
+    return false;
+  }
+
+ private:
+  std::size_t number(const Cell3& c) const {
+    return (static_cast<std::size_t>(c[2]) * n_[1] + c[1]) * n_[0] + c[0];
+  }
+  /// Those across edges too, in three dimensions not those across corners; through periodic sides,
+  /// but not those of `axis`.
+  template <class F>
+  void each_neighbour(const Cell3& cell, int axis, F&& f) const {
+    const int dz = domain_.dimension() == 3 ? 1 : 0;
+    for (int z = -dz; z <= dz; ++z)
+      for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+          if (std::abs(x) + std::abs(y) + std::abs(z) > 2) continue;
+          Cell3 to{cell[0] + x, cell[1] + y, cell[2] + z};
+          bool outside = false;
+          for (int k = 0; k < 3; ++k) {
+            if (to[k] >= 0 && to[k] < n_[k]) continue;
+            outside = outside || k == axis || domain_.sides()[k] != Side::Periodic;
+            to[k] = (to[k] + n_[k]) % n_[k];
+          }
+          if (!outside) f(to);
+        }
+  }
+
+  Domain domain_;
+  Cell3 n_;
+  std::vector<bool> whole_;
+};
+
+/// A flow that is driven against a wall. Looked for where an image is: what it holds is not seen
+/// in the scene.
+void check_way(const Scene& s, Plan& plan) {
+  if (std::ranges::none_of(s.obstacles, [](const auto& o) { return o.image.has_value(); })) return;
+  std::optional<Covered> covered;
+  for (int k = 0; k < s.box.dimension; ++k) {
+    const std::string drive = drive_along(s, k);
+    if (drive.empty()) continue;
+    if (!covered) covered.emplace(s, plan);
+    if (!covered->leaves_a_way(k))
+      plan.warnings.push_back(fmt::format(
+          "obstacles close the box along {}, and {} drives a flow there: nothing gets through; of "
+          "an image look at threshold and solid, or take finer voxels",
+          "xyz"[k], drive));
+  }
+}
+
+}  // namespace
+
+void check_shapes(const Scene& s, Plan& plan) {
+  check_mesh_size(s, plan);
+  check_gaps(s, plan);
+  check_way(s, plan);
+}
+
+}  // namespace lbm
