@@ -10,7 +10,7 @@ import pathlib
 import re
 import sys
 
-from matplotlib.collections import PatchCollection, PolyCollection
+from matplotlib.collections import LineCollection, PatchCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap
 import matplotlib.pyplot as plt
 import numpy as np
@@ -95,8 +95,12 @@ def draw_obstacle(axes, o, scene, folder, unit):
         axes.imshow(np.where(parts > 0, parts, np.nan), origin="lower", extent=(x0, x1, y0, y1), cmap=GREYS, vmin=0, vmax=1,
                     interpolation="nearest", zorder=1)
     elif "mesh" in o:
-        triangles = shapes.facing(shapes.placed_mesh(o, folder))[:, :, flat] / unit
-        axes.add_collection(PolyCollection(triangles, facecolor="0.6", edgecolor="0.4", linewidth=0.3, alpha=0.8, zorder=2))
+        corners = shapes.placed_mesh(o, folder)
+        middle = scene["box"].get("origin", [0.0] * 3)[1] + 0.5 * scene["box"]["size"][1]
+        cut = shapes.section(corners, middle)[:, :, flat] / unit  # shows what is hollow
+        axes.add_collection(PolyCollection(shapes.facing(corners)[:, :, flat] / unit, facecolor="0.6", edgecolor="0.4",
+                                           linewidth=0.3, alpha=0.25 if len(cut) else 0.8, zorder=2))
+        axes.add_collection(LineCollection(cut, colors="0.25", linewidths=1.5, zorder=2))
     else:
         low, high = np.array(o["from"])[flat] / unit, np.array(o["to"])[flat] / unit
         axes.add_patch(plt.Rectangle(low, *(high - low), facecolor="0.6", edgecolor="0.3"))

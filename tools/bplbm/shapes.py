@@ -48,6 +48,21 @@ def facing(corners):
     return seen[np.argsort(-seen[:, :, 1].mean(1), kind="stable")]
 
 
+def section(corners, place):
+    """Lines [n][2][3] in which the plane y = place cuts the triangles of a mesh."""
+    below = corners[:, :, 1] < place
+    crossed = below.any(1) & ~below.all(1)
+    corners, below = corners[crossed], below[crossed]
+    alone = np.where(below.sum(1) == 1, below.argmax(1), (~below).argmax(1))  # the corner with none beside it
+    rows = np.arange(len(corners))
+    tip = corners[rows, alone]
+    ends = []
+    for other in (corners[rows, (alone + 1) % 3], corners[rows, (alone + 2) % 3]):
+        part = (place - tip[:, 1]) / (other[:, 1] - tip[:, 1])
+        ends.append(tip + part[:, None] * (other - tip))
+    return np.stack(ends, axis=1)
+
+
 def grey_levels(obstacle, folder):
     """Levels [z][y][x] or [y][x] of the file of an image obstacle, y upwards."""
     path = pathlib.Path(folder) / obstacle["image"]

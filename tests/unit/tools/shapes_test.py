@@ -54,6 +54,15 @@ class Meshes(unittest.TestCase):
             path.write_bytes(bytes(80) + (2).to_bytes(4, "little") + facets)
             np.testing.assert_array_equal(shapes.read_stl(path), corners)
 
+    def test_a_section_shows_what_is_hollow(self):
+        corners = np.array([[[0, 0, 0], [2, 0, 0], [0, 4, 2]], [[0, 5, 0], [1, 5, 0], [0, 6, 1]]], float)
+        np.testing.assert_allclose(shapes.section(corners, 2.0), [[[0, 2, 1], [1, 2, 1]]])
+        self.assertEqual(shapes.section(corners, 9.0).shape, (0, 2, 3))
+        drawing = Drawing({"box": {"size": [0.004, 0.004, 0.004]}, "obstacle": [{"mesh": "mesh.stl", "scale": 0.001}]})
+        with triangle() as folder:
+            drawing.obstacles(folder)
+        self.assertIn('stroke="#444"', drawing.svg())
+
     def test_the_screen_is_what_its_script_makes(self):
         case = ROOT / "cases/screen_clogging"
         script = module_of(case / "make_screen.py")

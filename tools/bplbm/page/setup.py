@@ -107,11 +107,19 @@ class Drawing:
                           f'href="data:image/png;base64,{base64.b64encode(out.getvalue()).decode()}"/>')
 
     def mesh(self, o, folder):
-        """The triangles of a mesh that face the reader, seen along y."""
-        facing = shapes.facing(shapes.placed_mesh(o, folder))
+        """The triangles of a mesh that face the reader, seen along y; pale where the middle of the box cuts it, with the lines
+        of the cut, which show what is hollow."""
+        corners = shapes.placed_mesh(o, folder)
+        size, origin = self.tables["box"]["size"], self.tables["box"].get("origin", [0.0] * 3)
+        cut = shapes.section(corners, origin[1] + 0.5 * size[1])[:MOST_TRIANGLES]
         outline = "".join("M" + "L".join("{:.1f} {:.1f}".format(*self.place(corner)) for corner in t) + "Z"
-                          for t in facing[:MOST_TRIANGLES])
-        self.parts.append(f'<path d="{outline}" fill="#999" stroke="#555" stroke-width=".3" fill-opacity=".8"/>')
+                          for t in shapes.facing(corners)[:MOST_TRIANGLES])
+        self.parts.append(f'<path d="{outline}" fill="#999" stroke="#555" stroke-width=".3" '
+                          f'fill-opacity="{0.25 if len(cut) else 0.8}" stroke-opacity="{0.3 if len(cut) else 1}"/>')
+        lines = "".join("M" + "L".join("{:.1f} {:.1f}".format(*self.place(end)) for end in line) for line in cut)
+        width = max(1.5, o.get("thickness", 0.0) * self.scale)
+        if lines:
+            self.parts.append(f'<path d="{lines}" stroke="#444" stroke-width="{width:.1f}" stroke-linecap="round"/>')
 
     def motion(self, o, folder):
         """How an obstacle moves: in its middle, of a hollow one above it."""
@@ -197,7 +205,7 @@ def setup(run, tables, folder):
     drawing.sides()
     drawing.boundaries()
     drawing.lengths()
-    seen = "" if dimensions(tables) == 2 else "Seen along y. "
+    seen = "" if dimensions(tables) == 2 else "Seen along y, meshes with their section in the middle of the box. "
     text = html.escape(drive_text(tables)).replace("\n", "<br>")
     return (f'<figure>{drawing.svg()}<figcaption>{seen}{text}<br>thick: wall · dashed: periodic · coloured: boundary condition'
             "</figcaption></figure>")
