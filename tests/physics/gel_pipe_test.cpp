@@ -32,9 +32,9 @@ class Pipe {
     const int size = 2 * static_cast<int>(std::ceil(radius_)) + 4;
     const double force = 2.0 * (tau - 0.5) / 3.0 * wall_rate_ / radius_;
     KernelChoice choice{.force = true,
-                        .solid_term = "resistance",
+                        .solid_term = SolidTerm::Resistance,
                         .parameters = parameters(gel_.law(tau, wall_rate_), tau, force),
-                        .lattice = "D3Q19"};
+                        .lattice = VelocitySet::D3Q19};
     choice.parameters.magic = kResistanceMagic;
     const Side p = Side::Periodic;
     Fluid fluid({along, size, p, p, size, p}, choice);
