@@ -97,8 +97,7 @@ double bingham_torque(double inner, double bingham) {
 
 // At a Bingham number of 10 the layer that yields is some cells thick, at 1600 a tenth of one; the
 // error falls at least in proportion to the cell (+13.9, +6.2, +2.6 % at R = 5, 10, 20), towards 0.
-// (With the stress of covered cells taken alike on all planes it was 12.6 % at R = 5 and the same
-// at the others.)
+// (With the stress of covered cells taken alike on all planes they were 12.6, 6.0 and 2.5 %.)
 TEST(BinghamBetweenCylinders, TorqueTendsToTheExactOne) {
   EXPECT_NEAR(bingham_torque(10.0, 10.0), 1.0, 0.01);
   const double coarse = bingham_torque(5.0, 1600.0) - 1.0,
