@@ -115,6 +115,7 @@ class BondModel : protected Pointers {
   void endSurfacesIntersect(SurfacesIntersectData&, LAMMPS_NS::TriMesh*, ForceData&, ForceData&) {}
 
   void beginPass(SurfacesIntersectData& data, ForceData&, ForceData&) {
+    wishes_ = data.computeflag && std::ranges::any_of(book_->requests, &dem::BondRequest::open);
     if (!data.computeflag) return;
     book_->intact = 0;
     book_->energy.elastic = 0.0;
@@ -133,7 +134,7 @@ class BondModel : protected Pointers {
   void surfacesClose(SurfacesCloseData& close, ForceData& on_i, ForceData& on_j) {
     auto& data = static_cast<SurfacesIntersectData&>(close);
     if (!close.contact_history) return;
-    if (close.contact_history[bonded_] == 0.0 && !wanted(data, -1.0)) {
+    if (close.contact_history[bonded_] == 0.0 && !(wishes_ && wanted(data, -1.0))) {
       forget(data);
       return;
     }
@@ -259,8 +260,9 @@ class BondModel : protected Pointers {
             damping_[a][b]};
   }
   dem::BondLaw bond_law(const SurfacesIntersectData& d) const {
-    const double factor =
-        dem::strength_factor(atom->tag[d.i], atom->tag[d.j], book_->spread, book_->seed);
+    double factor = 1.0;
+    if (book_->spread != 0.0)
+      factor = dem::strength_factor(atom->tag[d.i], atom->tag[d.j], book_->spread, book_->seed);
     const int a = d.itype, b = d.jtype;
     dem::BondLaw law{
         bond_normal_[a][b], bond_shear_[a][b], factor * tensile_[a][b], factor * shear_[a][b], {}};
@@ -300,10 +302,11 @@ class BondModel : protected Pointers {
     const double overlap = d.radsum - d.r;
     const Arms arms{d.radi - 0.5 * overlap, d.radj - 0.5 * overlap};
     const dem::ContactLaw contact = contact_law(d.itype, d.jtype);
-    const dem::BondLaw bond = bond_law(d);
+    const bool bonded = d.contact_history[bonded_] != 0.0;  // else nothing reads the bond's law
+    const dem::BondLaw bond = bonded || wishes_ ? bond_law(d) : dem::BondLaw{};
     dem::PairMemory memory = remembered(d);
     const bool counted = d.computeflag && (d.j < atom->nlocal || atom->tag[d.i] < atom->tag[d.j]);
-    bond_where_wanted(memory, d, contact, bond, overlap, counted);
+    if (wishes_) bond_where_wanted(memory, d, contact, bond, overlap, counted);
     const dem::PairMotion m = motion(d, arms);
     const bool advance = d.computeflag && d.shearupdate;
     const dem::PairResponse r = dem::respond(memory, contact, bond, m, advance);
@@ -365,6 +368,7 @@ class BondModel : protected Pointers {
   int bonded_ = 0;  // first of the values of a pair's history: PairMemory
   double exponent_ = 1.0;
   bool ledger_ = false;
+  bool wishes_ = false;  // some fix bond/create asks for bonds in this pass
   double radius_ = 1.0;  // of the section over the smaller particle's
   double **contact_normal_ = nullptr, **contact_shear_ = nullptr, **friction_ = nullptr,
          **damping_ = nullptr, **bond_normal_ = nullptr, **bond_shear_ = nullptr,
