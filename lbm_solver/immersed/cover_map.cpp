@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lbm_solver/base/contracts.h"
+#include "lbm_solver/base/held_bytes.h"
 #include "lbm_solver/immersed/clump_cover.h"
 #include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/mapped_radius.h"
@@ -378,11 +379,16 @@ std::size_t CoverMap::covered_blocks() const {
 }
 
 std::size_t CoverMap::bytes() const {
-  std::size_t blocks = 0;
-  for (const Footprint& f : footprints_) blocks += f.blocks().size();
-  for (const auto* list : {&walls_, &fixed_})
-    for (const auto& solid : *list) blocks += solid.size();
-  return std::span(index_).size_bytes() + blocks * sizeof(CoverBlock);
+  std::size_t bytes = held(index_) + held(motions_) + held(carriers_) + held(footprints_);
+  for (const Footprint& f : footprints_) bytes += f.bytes();
+  for (const auto* list : {&walls_, &fixed_}) {
+    bytes += held(*list);
+    for (const auto& solid : *list) bytes += held(solid);
+  }
+  for (const Mover& m : movers_)
+    bytes +=
+        sizeof(MovingShape) + m.shape->bytes() + held(m.places) + held(m.far) + held(m.far_places);
+  return bytes + held(movers_);
 }
 
 }  // namespace lbm

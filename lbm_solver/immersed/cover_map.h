@@ -82,6 +82,7 @@ class CoverMap {
   /// Σ ε of a cell of the rank, at most 1.
   double solid_fraction(int x, int y, int z = 0) const;
   std::size_t covered_blocks() const;
+  /// Of memory that it holds: what the bodies cover, how each is found, and the meshes that move.
   std::size_t bytes() const;
 
  private:

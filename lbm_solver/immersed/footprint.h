@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "lbm_solver/base/held_bytes.h"
 #include "lbm_solver/field/domain.h"
 #include "lbm_solver/immersed/body.h"
 #include "lbm_solver/immersed/cover_block.h"
@@ -55,6 +56,8 @@ class Footprint {
   const std::vector<Span>& spans() const { return spans_; }
   std::vector<CoverBlock>& blocks() { return blocks_; }
   const std::vector<CoverBlock>& blocks() const { return blocks_; }
+  /// Of memory that its lists hold.
+  std::size_t bytes() const { return held(spans_) + held(next_) + held(blocks_); }
 
  private:
   void find_image(const Vec3& centre, const Block& cells);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "lbm_solver/base/held_bytes.h"
 #include "lbm_solver/base/pose.h"
 #include "lbm_solver/immersed/geometry.h"
 
@@ -42,6 +43,8 @@ class MovingShape {
   /// @throws std::invalid_argument  see fill()
   void map(const Domain& domain, const Block& cells,
            const std::function<void(const CoverSpan&)>& take) const;
+  /// Of memory that it holds beside itself; the mesh at rest is the scene's.
+  std::size_t bytes() const { return held(mesh_.vertices) + held(mesh_.triangles) + held(bend_); }
 
  private:
   struct Image;

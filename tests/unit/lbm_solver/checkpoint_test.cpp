@@ -178,6 +178,51 @@ TEST_F(CheckpointFileTest, OfADamagedPairTheOneBeforeIsTaken) {
   EXPECT_THROW(find_restart(scene, folder_.path(), options), InputError);
 }
 
+// At a fault each program keeps its own part, the fluid before it can know the solid's: that one
+// must be there, but nothing says of which bits. A damaged part of the fluid is refused by the rank
+// that looks; the others take what it has found.
+TEST_F(CheckpointFileTest, AtAFaultEachKeepsItsOwn) {
+  const Scene scene = read_scene({folder_.write("scene.toml", kScene)});
+  const Plan plan = make_plan(scene);
+  const RestartOptions fault{"fault", {}};
+  const std::string fluid = path("fault.h5");
+  protocol::SolidParts parts(folder_.path() + "/fault");
+  const auto refusal = [&](const Scene& of) {
+    try {
+      find_restart(of, folder_.path(), fault);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  const auto expect_refused = [&](const std::string& words) {
+    EXPECT_NE(refusal(scene).find(words), std::string::npos) << refusal(scene);
+  };
+  expect_refused("fault.h5: no checkpoint to restart from");
+  write_checkpoint(fluid, checkpoint_record(scene, plan, 13, ""), 13);
+  expect_refused("is missing: the solid's part of the checkpoint");
+  expect_refused("use --restart alone for the last whole checkpoint");
+  for (const char states : {'a', 'b'}) {  // whatever it holds
+    parts.keep(13, std::as_bytes(std::span(std::string(4000, states))));
+    const auto found = find_restart(scene, folder_.path(), fault);
+    EXPECT_EQ(found->interval, 13);
+    EXPECT_EQ(found->path, fluid);
+    EXPECT_EQ(found->solid_part, parts.name(13));
+    EXPECT_FALSE(found->earlier);
+    EXPECT_NO_THROW(check_same_scene(*found, scene, plan, fault));
+    const Restart taken = take_restart(scene, folder_.path(), fault, false);
+    EXPECT_TRUE(taken.record == found->record);
+    EXPECT_EQ(taken.solid_part, found->solid_part);
+  }
+  Scene alone = scene;
+  alone.coupling.reset();
+  EXPECT_NE(refusal(alone).find("is kept by coupled runs only"), std::string::npos)
+      << refusal(alone);
+  flip(fluid, 8 * fs::file_size(fluid) - 1);  // behind what is read without looking for damage
+  expect_refused("fault.h5");
+  EXPECT_EQ(take_restart(scene, folder_.path(), fault, false).interval, 13);
+}
+
 TEST_F(CheckpointFileTest, NamesEveryKeyOfAScene) {
   const Scene scene = read_scene({folder_.write("scene.toml", kScene)});
   EXPECT_EQ(scene.settings.at("fluid.density"), "1000");
