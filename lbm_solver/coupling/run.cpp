@@ -103,6 +103,7 @@ class CoupledRun {
     summary.versions[partner_.program] = partner_.program_version;
     summary.versions["protocol"] = fmt::format("{}", protocol::kProtocolVersion);
     summary.waiting = clock_.parts().at("waiting");
+    summary.overlapped = scene_.coupling->overlapped;
     if (particles_.report()) summary.solid = *particles_.report();
     summary.block_moves = balance_.moves();
     say_busiest(scene_, *fluid_, summary, log_);

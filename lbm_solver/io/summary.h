@@ -28,6 +28,7 @@ struct Summary {
   int block_moves = 0;                    ///< times that blocks of equal work were cut anew
   std::map<std::string, double> writing;  ///< kind of file -> seconds
   double waiting = 0.0;                   ///< seconds spent waiting for the solid
+  bool overlapped = false;                ///< both programs compute at once
   double ma_max = 0.0;                    ///< max |u| / c_s
   double ma_paper = 0.0;                  ///< max |u| / C
   double re = 0.0, re_h = 0.0;

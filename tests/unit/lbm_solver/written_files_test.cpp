@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "lbm_solver/coupling/observers.h"
+#include "lbm_solver/coupling/report.h"
 #include "lbm_solver/io/scene_reader.h"
 #include "protocol/transport/hdf5_file.h"
 #include "tests/support/job.h"
@@ -133,6 +134,21 @@ TEST(FieldWriter, SaysThatItsFolderIsGone) {
         << error.what();
   }
   std::filesystem::rename(folder.path() + "-elsewhere", folder.path());
+}
+
+TEST(Summary, SaysWhatProgramsThatComputeAtOnceWouldSave) {
+  Summary s;
+  s.wall_seconds = 10.0;
+  const auto expect = [&](double waits, bool overlapped, const char* words, bool said) {
+    s.time_share["waiting"] = waits;
+    s.overlapped = overlapped;
+    EXPECT_EQ(describe(s).find(words) != std::string::npos, said) << describe(s);
+  };
+  expect(0.3, false, "would save up to 30 %", true);
+  expect(0.7, false, "would save up to 30 %", true);  // the fluid's own share
+  expect(0.3, true, "waits 30 % of its time for the solid", true);
+  expect(0.3, true, "overlapped", false);
+  expect(0.15, false, "hint", false);
 }
 
 TEST(Summary, NamesTheUnitOfEveryNumber) {
