@@ -147,7 +147,7 @@ TEST(Galilean, DragInAMovingFrame) {
   const test::SlowArray array;
   const auto drag = [&](CollisionOperator collision, SolidTerm term, double carried) {
     const Domain domain{array.n, array.n, Side::Periodic, Side::Periodic};
-    Fluid fluid = make({"", term}, domain, collision, array.tau, {array.g, 0.0});
+    Fluid fluid = make(term, domain, collision, array.tau, {array.g, 0.0});
     return array.drag(fluid, carried);
   };
   const double still =

@@ -45,7 +45,7 @@ int turned_direction(const Lattice& l, int q, const Turn& t) {
   return -1;
 }
 
-class TurnTest : public testing::TestWithParam<std::tuple<std::string, CollisionOperator>> {};
+class TurnTest : public testing::TestWithParam<std::tuple<VelocitySet, CollisionOperator>> {};
 
 TEST_P(TurnTest, ATurnedOrMirroredStateGivesTheTurnedResult) {
   const auto& [lattice, collision] = GetParam();

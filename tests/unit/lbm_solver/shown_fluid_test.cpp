@@ -244,9 +244,10 @@ TEST(ShownFluid, MeanVelocityIsTheFluxByResistance) {
 
 TEST(ShownFluid, SchemesOfTheirOwnShowTheBodyWhereItCoversCellsWhole) {
   const Box& box = kBoxes[0];
-  for (const std::string scheme : {"bounce_back", "implicit_immersed_boundary"}) {
-    Fluid fluid(box.domain, choice("none"));
-    fluid.use(make_scheme(solid_scheme(scheme), box.domain, fluid.lattice()));
+  for (const SolidScheme scheme :
+       {SolidScheme::BounceBack, SolidScheme::ImplicitImmersedBoundary}) {
+    Fluid fluid(box.domain, choice(SolidTerm::None));
+    fluid.use(make_scheme(scheme, box.domain, fluid.lattice()));
     Body body = box.body;
     body.velocity = {0.001, 0.0};
     for (int step = 0; step < 20; ++step) {
