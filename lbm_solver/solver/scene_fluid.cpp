@@ -255,8 +255,8 @@ void expect_fluid(const Scene& s, const Fluid& fluid) {
 /// never acts there, and a flux would change by it from step to step.
 void settle_solids(const Plan& p, Fluid& fluid) {
   if (!fluid.cover()) return;
-  const SolidTerm rows = solid_term(p.kernel.solid_term, p.kernel.parameters.tau);
-  const auto reflects = [](const SolidTerm::Halves& h) {
+  const SolidTermRows rows = solid_term_rows(p.kernel.solid_term, p.kernel.parameters.tau);
+  const auto reflects = [](const SolidTermRows::Halves& h) {
     return h.odd.f == -2.0 && h.odd.fluid == 0.0;
   };
   const Cell3& n = fluid.cells().size;
