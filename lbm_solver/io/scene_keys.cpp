@@ -174,7 +174,7 @@ constexpr Meaning kMeanings[] = {
      "particles, so that the mixture as a whole does not fall."},
     {"coupling.virtual_mass",
      "Virtual mass of a particle over the mass of the fluid that it covers (loads.md).",
-     "1 for particles lighter than the fluid, else 0"},
+     "1 for light particles (loads.md), else 0"},
     {"coupling.lubrication_range", "Gap below which lubrication acts; 0 leaves it out."},
     {"coupling.schedule",
      "serial-explicit, or parallel-explicit: both programs at once, loads one interval old."},
