@@ -203,7 +203,8 @@ TEST_F(CheckpointFileTest, AtAFaultEachKeepsItsOwn) {
   expect_refused("is missing: the solid's part of the checkpoint");
   expect_refused("use --restart alone for the last whole checkpoint");
   for (const char states : {'a', 'b'}) {  // whatever it holds
-    parts.keep(13, std::as_bytes(std::span(std::string(4000, states))));
+    const std::string part(4000, states);
+    parts.keep(13, std::as_bytes(std::span(part)));
     const auto found = find_restart(scene, folder_.path(), fault);
     EXPECT_EQ(found->interval, 13);
     EXPECT_EQ(found->path, fluid);
