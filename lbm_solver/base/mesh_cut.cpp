@@ -74,7 +74,9 @@ void add_pieces(const Polygon& polygon, double near, TriangleMesh& part) {
   const int first = side(0) + side(2) > side(1) + side(3) ? 0 : 1;  // a long side begins here
   const double across = std::max(side(first + 1), side((first + 3) % 4));
   const double along = std::max(side(first), side((first + 2) % 4));
-  const int pieces = std::clamp(static_cast<int>(std::ceil(along / (kLongest * across))), 1, 1000);
+  if (across <= near) return;
+  const int pieces =
+      static_cast<int>(std::clamp(std::ceil(along / (kLongest * across)), 1.0, 1000.0));
   const auto at = [&](int from, int to, int piece) -> Vec3 {
     const Vec3 &a = polygon[from % 4], &b = polygon[to % 4];
     return a + (1.0 * piece / pieces) * (b - a);

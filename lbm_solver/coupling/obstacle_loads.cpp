@@ -4,36 +4,6 @@
 #include <algorithm>
 
 namespace lbm {
-namespace {
-
-int cells_of(const CellBox& box, const Block& mine) {
-  int count = 1;
-  for (int k = 0; k < 3; ++k)
-    count *= std::max(0, std::min(box.to[k], mine.begin[k] + mine.size[k]) -
-                             std::max(box.from[k], mine.begin[k]));
-  return count;
-}
-
-/// Cells of each block that a rank has. Those that an earlier block has too are none of a later
-/// one's, as in BlockLoads.
-std::vector<int> own_cells(const std::vector<CellBox>& boxes, const Block& mine) {
-  std::vector<int> cells;
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    cells.push_back(cells_of(boxes[i], mine));
-    for (std::size_t j = 0; j < i; ++j) {
-      CellBox both = boxes[i];
-      for (int k = 0; k < 3; ++k) {
-        both.from[k] = std::max(both.from[k], boxes[j].from[k]);
-        both.to[k] = std::max(both.from[k], std::min(both.to[k], boxes[j].to[k]));
-      }
-      cells[i] -= cells_of(both, mine);
-    }
-  }
-  return cells;
-}
-
-}  // namespace
-
 ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                              const std::string& folder, double keep_until)
     : units_(plan.units), ranks_(ranks), boxes_(obstacle_blocks(scene, plan)) {
@@ -69,7 +39,7 @@ void ObstacleLoads::add(Fluid& fluid, std::span<const BodyLoad> bodies) {
   if (!boxes_.empty()) {
     if (!blocks_) blocks_.emplace(fluid, boxes_);
     const std::vector<BodyLoad> loads = blocks_->loads();
-    const std::vector<int> cells = own_cells(boxes_, fluid.cells());
+    const std::vector<int>& cells = blocks_->cells();
     for (std::size_t i = 0; i < loads.size(); ++i) {
       // as a pressure gradient would: on the fluid that its cells do not hold, too
       const Vec3 force = loads[i].force + cells[i] * fluid.body_force();

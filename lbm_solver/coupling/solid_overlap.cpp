@@ -14,7 +14,7 @@
 namespace lbm {
 namespace {
 
-/// The place of a triangle that is nearest to the origin [Ericson, Real-Time Collision Detection].
+/// The place of a triangle that is nearest to the origin [Ericson2005].
 Vec3 nearest_place(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a;
   const double d1 = -ab.dot(a), d2 = -ac.dot(a), d3 = -ab.dot(b), d4 = -ac.dot(b), d5 = -ab.dot(c),
@@ -55,6 +55,12 @@ double depth_of(const Scene& s, const ObstacleScene& o, const Vec3& centre, doub
     const double inside =
         depth_in_mesh(*o.mesh->surface, centre, moves ? &pose : nullptr, s.box.dimension);
     return o.mesh->hollow ? r - inside : r + inside;
+  }
+  if (o.block()) {
+    double inside = std::numeric_limits<double>::infinity();  // from its nearest face
+    for (int k = 0; k < s.box.dimension; ++k)
+      inside = std::min({inside, centre[k] - o.from[k], o.to[k] - centre[k]});
+    if (inside > 0.0) return r + inside;
   }
   ObstacleScene there = o;
   if (moves) there.centre = pose.moved(o.centre);

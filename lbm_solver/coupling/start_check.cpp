@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "lbm_solver/coupling/solid_overlap.h"
+#include "protocol/wire/clumps.h"
 
 namespace lbm {
 namespace {
@@ -22,7 +24,7 @@ Vec3 place_of(const Scene& s, const protocol::Particle& p) {
 }
 
 /// Whether a rank's cells show that a ball may lie in an obstacle, or its place that it may in a
-/// wall.
+/// wall or in cells of another rank.
 bool may_lie_in_solid(const Scene& s, const Plan& plan, const Fluid& fluid, const Vec3& x,
                       double r) {
   const Vec3 centre = plan.units.to_lattice_position(x);
@@ -35,7 +37,7 @@ bool may_lie_in_solid(const Scene& s, const Plan& plan, const Fluid& fluid, cons
       if (s.box.sides[k] == SideKind::Periodic) cell[k] = (cell[k] + n) % n;
       if (cell[k] < 0 || cell[k] >= n) return true;  // beyond a wall
     }
-    return mine.holds(cell) &&
+    return !mine.holds(cell) ||
            fluid.solid_fraction(cell[0] - mine.begin[0], cell[1] - mine.begin[1],
                                 cell[2] - mine.begin[2]) > 0.5;
   };
@@ -47,6 +49,16 @@ bool may_lie_in_solid(const Scene& s, const Plan& plan, const Fluid& fluid, cons
       if (covered(place)) return true;
     }
   return false;
+}
+
+/// Numbers of the carriers of clumps, whose radius is that of a hull. Collective.
+std::set<std::int64_t> hulls(const Fluid& fluid, const Particles& particles) {
+  std::vector<double> carriers;
+  for (const protocol::Particle& p : particles.states())
+    if (protocol::is_part(p.shape)) carriers.push_back(static_cast<double>(p.shape.carrier));
+  std::set<std::int64_t> all;  // known to rank 0
+  for (const double id : fluid.ranks().collect(carriers)) all.insert(static_cast<std::int64_t>(id));
+  return all;
 }
 
 }  // namespace
@@ -61,10 +73,12 @@ void warn_of_starts(const Scene& s, const Plan& plan, const Fluid& fluid,
                    {static_cast<double>(p.state.id), x[0], x[1], x[2], p.shape.radius});
   }
   lines = fluid.ranks().collect(lines);
+  const std::set<std::int64_t> clumps = hulls(fluid, particles);
   std::map<std::int64_t, std::string> found;
   for (std::size_t i = 0; i + 4 < lines.size(); i += 5) {
     const double r = lines[i + 4];
     const Vec3 x(lines[i + 1], lines[i + 2], lines[i + 3]);
+    if (clumps.contains(static_cast<std::int64_t>(lines[i]))) continue;
     const auto in = solid_overlaps(s, x, r, 0.0);
     if (in.empty() || in[0].depth < kDeepStart * r) continue;
     found.emplace(static_cast<std::int64_t>(lines[i]),

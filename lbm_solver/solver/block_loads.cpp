@@ -32,7 +32,7 @@ void each_cell(const CellBox& box, const Block& mine, F&& f) {
 }  // namespace
 
 BlockLoads::BlockLoads(Fluid& fluid, const std::vector<CellBox>& blocks)
-    : fluid_(fluid), arrivals_(blocks.size()) {
+    : fluid_(fluid), cells_(blocks.size()), arrivals_(blocks.size()) {
   const Lattice& lattice = fluid.lattice();
   const Cell3& begin = fluid.cells().begin;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -43,6 +43,7 @@ BlockLoads::BlockLoads(Fluid& fluid, const std::vector<CellBox>& blocks)
       const auto owner = std::find_if(blocks.begin(), blocks.end(),
                                       [&](const CellBox& box) { return box.holds(cell); });
       if (owner != blocks.begin() + static_cast<std::ptrdiff_t>(b)) return;
+      ++cells_[b];
       const int x = cell[0] - begin[0], y = cell[1] - begin[1], z = cell[2] - begin[2];
       for (int q = 1; q < lattice.Q; ++q) {
         const auto from = origin(fluid.domain(), cell, lattice.c[q]);

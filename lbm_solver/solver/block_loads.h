@@ -25,6 +25,9 @@ class BlockLoads {
   /// lattice units.
   std::vector<BodyLoad> loads() const;
 
+  /// Cells of each block that this rank sweeps; one that blocks share is of the first.
+  const std::vector<int>& cells() const { return cells_; }
+
  private:
   /// What arrives along one direction at one block.
   struct Arrivals {
@@ -33,6 +36,7 @@ class BlockLoads {
     std::vector<Vec3> arms;                   ///< to the middle of each link
   };
   const Fluid& fluid_;
+  std::vector<int> cells_;
   std::vector<std::vector<Arrivals>> arrivals_;  // [block][direction - 1]
 };
 

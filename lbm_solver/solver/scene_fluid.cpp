@@ -236,12 +236,12 @@ void add_shape(const Scene& s, const Plan& p, const Geometry& shape, const Obsta
 
 /// Refuses solids that leave nothing to compute. Collective.
 void expect_fluid(const Scene& s, const Fluid& fluid) {
-  constexpr double kWhole = 1.0 - 1e-6;
+  constexpr double kClosed = 1.0 - 1e-6;
   const Cell3& n = fluid.cells().size;
   bool any = false;
   for (int z = 0; z < n[2] && !any; ++z)
     for (int y = 0; y < n[1] && !any; ++y)
-      for (int x = 0; x < n[0] && !any; ++x) any = fluid.solid_fraction(x, y, z) < kWhole;
+      for (int x = 0; x < n[0] && !any; ++x) any = fluid.solid_fraction(x, y, z) < kClosed;
   if (fluid.ranks().max(any ? 1.0 : 0.0) > 0.0) return;
   throw InputError(s.file + ": obstacle",
                    "covers the whole box with the others: no cell is left to the fluid",
@@ -251,8 +251,9 @@ void expect_fluid(const Scene& s, const Fluid& fluid) {
 
 /// Gives the cells that a solid covers whole, and that send back all that arrives, the velocity of
 /// their solid. They keep for ever what they hold among them, turned to and fro from step to step,
-/// so they must not begin with the half of a body force that set_equilibrium takes off: the force
-/// never acts there, and a flux would change by it from step to step.
+/// so they must not begin with a velocity of the fluid, nor with the half of a body force that
+/// set_equilibrium takes off: the force never acts there, and a flux would change by it from step
+/// to step.
 void settle_solids(const Plan& p, Fluid& fluid) {
   if (!fluid.cover()) return;
   const SolidTermRows rows = solid_term_rows(p.kernel.solid_term, p.kernel.parameters.tau);

@@ -47,11 +47,11 @@ std::string without_source(const std::string& error) {
 std::string advice_for(const std::string& error) {
   const auto says = [&](const char* words) { return error.find(words) != std::string::npos; };
   if (says("left the domain"))
-    return "a mesh must lie in the box, all along its way: take the scene's own, ${mesh1}, which "
-           "is "
-           "cut at the box, or end its motion before a wall";
+    return "a mesh must lie in the box, all along its way: take the scene's own, "
+           "${mesh1}, which is cut at the box, or end its motion before a wall";
   if (says("assertion failed"))
-    return "a mesh may have triangles longer than a periodic side of the box, in two dimensions "
+    return "if the script has a mesh, it may have triangles longer than a periodic side of the "
+           "box, in two dimensions "
            "than box.depth: take the scene's own, ${mesh1}, or a larger depth";
   return {};
 }

@@ -104,6 +104,8 @@ TEST_F(MeshWalls, ABlockMovesInAThinLayer) {
     const JobResult job = run();
     test::expect_end(job, 60.0, 0, {});
     EXPECT_EQ(job.output.find("assertion"), std::string::npos) << job.output;
+    // from 8.5 mm down to 5 + 1 mm, while the block goes up and down by 0.3 mm, and its surface in
+    // cells of 0.5 mm
     EXPECT_NEAR(sunk(), -0.0025, 6e-4) << depth;
   }
 }

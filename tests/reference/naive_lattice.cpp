@@ -184,7 +184,7 @@ double NaiveLattice::tau(const Cell& f, double eddies, double part) const {
   if (p.viscosity_table) {
     q.topLeftCorner(l_.D, l_.D).diagonal().array() -= q.trace() / l_.D;
     if (part == 1.0) return 1.0 / (*p.viscosity_table)(2.0 * q.squaredNorm() / (m.rho * m.rho));
-    const double all = q.squaredNorm(), down = q.diagonal().squaredNorm() / all;
+    const double all = std::max(q.squaredNorm(), 1e-100), down = q.diagonal().squaredNorm() / all;
     const double xy = q(0, 1) * q(0, 1), xz = q(0, 2) * q(0, 2), yz = q(1, 2) * q(1, 2);
     const double along = 16.0 * (xy * xz + xy * yz + xz * yz) / (all * all);
     const double corner = part < 0.5 ? std::pow(1.0 - 2.0 * part, 2) : 0.0;

@@ -27,7 +27,8 @@ def default_quantities(run):
 
 def of_flux(run):
     """Mean velocity over the box in the last frame of a Run whose fluid a steady force, or a pressure difference across
-    periodic sides, drives past solids, and the permeability k = ν U/g that it gives where it no longer changes."""
+    periodic sides, drives past solids, and the permeability k = ν U/g that it gives where it no longer changes and
+    the viscosity is one."""
     p = run.parameters
     drive = {axis: p.get(f"body_force_{axis}", 0.0) + p.get(f"pressure_jump_{axis}", 0.0) / (p.get("density", 1.0) * p.get(f"box_{axis}", 1.0))
              for axis in "xyz"}
@@ -36,12 +37,13 @@ def of_flux(run):
     frames = run.frames()
     flux = dict(zip("xyz", run.flux(frames[-1][1]))) if frames else {}
     before = dict(zip("xyz", run.flux(frames[-2][1]))) if len(frames) > 1 else {}
+    newtonian = "share_at_rest_bound" not in p
     found = []
     for axis, mean in flux.items():
         if not drive[axis]:
             continue
         found.append(quantity(f"mean velocity along {axis}, solids included", mean, "m/s"))
-        if abs(mean - before.get(axis, 0.0)) < STEADY * abs(mean):
+        if newtonian and abs(mean - before.get(axis, 0.0)) < STEADY * abs(mean):
             found.append(quantity(f"permeability along {axis}", p["kinematic_viscosity"] * mean / drive[axis], "m²"))
     return found
 

@@ -95,7 +95,7 @@ class Run:
 
     def flux(self, name):
         """Mean over the box of the momentum that arrives in the cells, over the density [m/s], its components: in steady flow
-        the flux, covered cells or not, with every solid term. None where a scene has no covered cells."""
+        the flux, covered cells or not, with every solid term. An empty list where a scene has no covered cells."""
         with h5py.File(self.folder / "fields.h5") as f:
             return [f[name].attrs[f"flux_{axis}"] for axis in "xyz" if f"flux_{axis}" in f[name].attrs]
 

@@ -129,6 +129,8 @@ TEST(BlockLoads, AddUpWhereBlocksTouch) {
   const auto overlapping = BlockLoads(fluid, {whole, low}).loads();
   EXPECT_EQ(overlapping[0].force, one.force);
   EXPECT_EQ(overlapping[1].force, Vec3(0.0, 0.0, 0.0));
+  EXPECT_EQ(BlockLoads(fluid, {whole, low, low, high}).cells(), (std::vector<int>{40, 0, 0, 0}));
+  EXPECT_EQ(BlockLoads(fluid, {low, low, whole}).cells(), (std::vector<int>{16, 0, 24}));
 }
 
 }  // namespace

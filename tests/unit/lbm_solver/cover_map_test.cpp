@@ -2,7 +2,9 @@
 #include "lbm_solver/immersed/cover_map.h"
 
 #include <gtest/gtest.h>
+#ifdef __GLIBC__
 #include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <cstdio>
@@ -195,8 +197,12 @@ TEST(CoverMap, AMeshThatMovesComesBeforeTheBodies) {
 /// Bytes of the heap that this process has in use, by the allocator's own account; 0 where the
 /// allocator keeps none (under sanitizers).
 double heap() {
+#if defined(__GLIBC__) && __GLIBC_PREREQ(2, 33)
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+#else
+  return 0.0;
+#endif
 }
 
 TEST(CoverMap, TellsTheMemoryThatItHolds) {
