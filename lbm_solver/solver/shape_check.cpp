@@ -25,13 +25,14 @@ void check_mesh_size(const Scene& s, const Plan& plan) {
     const auto [low, high] = bounds(*o.mesh->surface);
     const double size = (high - low).maxCoeff();
     if (size >= plan.units.dx * (1.0 - 1e-9)) continue;
-    throw InputError(fmt::format("{}: the {}. obstacle's mesh", s.file, i + 1),
-                     fmt::format("is {:.3g} m large, {:.2g} of a cell: no cell sees it", size,
-                                 size / plan.units.dx),
-                     o.mesh->file.starts_with("of a ")  // made from the scene's own lengths ? "take
-                                                        // finer cells, or a larger obstacle"
-                     : "are its lengths in metres already? then leave scale "
-                       "out (0.001 is for a file in mm)");
+    const bool from_file = !o.mesh->file.starts_with("of a ");
+    throw InputError(
+        fmt::format("{}: the {}. obstacle's mesh", s.file, i + 1),
+        fmt::format("is {:.3g} m large, {:.2g} of a cell: no cell sees it", size,
+                    size / plan.units.dx),
+        from_file
+            ? "are its lengths in metres already? then leave scale out (0.001 is for a file in mm)"
+            : "take finer cells, or a larger obstacle");
   }
 }
 
