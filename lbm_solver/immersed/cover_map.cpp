@@ -225,6 +225,7 @@ std::vector<CoverBlock> CoverMap::fill_blocks(const Geometry& geometry) {
       places.push_back(place(span.y, span.z, b));
     });
   });
+  blocks.shrink_to_fit();  // before the index points at them
   for (std::size_t k = 0; k < blocks.size(); ++k) insert(index_[places[k]], blocks[k]);
   return blocks;
 }
