@@ -10,8 +10,9 @@ from bplbm.project import BIN, ROOT
 
 CALL = re.compile(r'\b(?:number|number_or|numbers_or|optional_number|integer|optional_integer|flag_or|choice_or|text_or|text|'
                   r'vector|vector_or_zero|vectors_or_none|range|table|optional_table|tables)\(\s*"(\w+)"'
-                  r'|\b\w+\(t, "(\w+)"')
-WORD = re.compile(r'\b(?:word|key) == "(\w+)"|\bregister\w+\("(\w+)"')  # of a fix; of a pair style
+                  r'|\b\w+(?:<\w+>)?\(t, "(\w+)"')
+# of a fix, compared or in a table; of a pair style
+WORD = re.compile(r'\b(?:word|key) == "(\w+)"|^ +\{"(\w+)",\s|\bregister\w+\("(\w+)"', re.M)
 COMMANDS, SCENE = "liggghts_coupling/docs/commands.md", "lbm_solver/docs/scene.md"
 
 
