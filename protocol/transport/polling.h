@@ -24,8 +24,14 @@ class Crowd {
   /// @throws nothing. One call of the system; a look takes half a microsecond.
   bool here() const { return elapsed() - (computed() - computed_at_begin_) > kTurn; }
 
-  /// Waits that follow one in a crowd are in it as well: they sleep without waiting for the proof.
+  /// Waits that follow one in a crowd are in it as well, whatever they wait for: they sleep without
+  /// waiting for the proof.
   static constexpr int kLasts = 100;
+  /// How many of this thread still do.
+  static int& lasts() {
+    static thread_local int waits = 0;
+    return waits;
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -51,12 +57,12 @@ bool poll(double seconds, Ready&& ready) {
   constexpr int busy_turns = 2000, turns_a_look = 8;
   constexpr auto nap = std::chrono::microseconds(20);
   using Clock = std::chrono::steady_clock;
-  static thread_local int crowded_waits = 0;
   const Waiting here("an exchange");
   for (int turn = 0; turn < turns_a_look; ++turn)  // most waits end here
     if (ready()) return true;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   const Crowd crowd;
+  int& crowded_waits = Crowd::lasts();
   if (crowded_waits > 0) --crowded_waits;
   for (int turn = turns_a_look; Clock::now() < end; ++turn) {
     if (ready()) return true;
