@@ -38,7 +38,8 @@ double capacity(int dimension) {
 
 /// Largest yield stress that a force on each volume of fluid along an axis overcomes [Pa]. Between
 /// walls G H/2, whatever lies in the channel besides: a stress that grows so towards the walls
-/// bears the force. Around discs or spheres their capacity; else at most G times the box.
+/// bears the force. Around discs or spheres their capacity, and the shear between two rows of them;
+/// else at most G times the box.
 double stress_of(const Scene& s, double force, int axis) {
   if (force == 0.0) return 0.0;
   if (const double gap = gap_along(s, axis); gap > 0.0) return 0.5 * force * gap;
@@ -54,7 +55,7 @@ double stress_of(const Scene& s, double force, int axis) {
     volume *= s.box.size[k];
     if (k != axis) across = std::min(across, s.box.size[k]);
   }
-  return round ? force * volume / borne : force * across;
+  return round ? force * volume / borne + 0.5 * force * across : force * across;
 }
 
 /// Whether something moves at a velocity of its own, which no yield stress stops.

@@ -34,10 +34,13 @@ double tau_of(const Plan& plan, double viscosity) {
   return 0.5 + 3.0 * viscosity * plan.units.dt / (plan.units.dx * plan.units.dx);
 }
 
-/// Shear rate at which the law comes to a bound [1/s]; 0: it never does.
-double shear_rate_at(const ViscosityLaw& law, double bound, bool from_above) {
-  for (double rate = 1e-9 * law.shear_rate(); rate < 1e9 * law.shear_rate(); rate *= 1.01)
-    if (from_above ? law(rate) < 0.999 * bound : law(rate) <= 1.001 * bound) return rate;
+/// Least and largest shear rate that are looked at, over the typical one.
+constexpr double kSlowest = 1e-9, kFastest = 1e9;
+
+/// Shear rate at which the law leaves a bound, or comes to it [1/s]; 0: it never does.
+double shear_rate_at(const ViscosityLaw& law, double bound, bool leaves) {
+  for (double rate = kSlowest * law.shear_rate(); rate < kFastest * law.shear_rate(); rate *= 1.01)
+    if ((std::abs(law(rate) - bound) <= 0.001 * bound) != leaves) return rate;
   return 0.0;
 }
 
@@ -213,8 +216,9 @@ std::vector<std::string> describe_viscosity(const Scene& s, const Plan& plan) {
   if (parts.time_constant) text += fmt::format(", λ {:.4g} s", v.time_constant);
   lines.push_back(text +
                   fmt::format("; ν {:.4g} m²/s at the typical shear rate {:.4g} 1/s", nu, rate));
-  const double slow = shear_rate_at(law, law.nu_max(), true),
-               fast = shear_rate_at(law, law.nu_min(), false);
+  const bool thickens = law(kFastest * rate) > law(kSlowest * rate);
+  const double slow = shear_rate_at(law, thickens ? law.nu_min() : law.nu_max(), true),
+               fast = shear_rate_at(law, thickens ? law.nu_max() : law.nu_min(), false);
   lines.push_back(fmt::format(
       "ν {:.4g} … {:.4g} m²/s, τ {:.5g} … {:.4g}; the law acts from {:.3g} to {} 1/s", law.nu_min(),
       law.nu_max(), tau_of(plan, law.nu_min()), tau_of(plan, law.nu_max()), slow,

@@ -180,6 +180,20 @@ TEST(ViscosityOfAScene, WarnsOfAHugeBinghamNumber) {
   EXPECT_FALSE(warns(make_plan(scene_with(folder, mud + "8}")), "sets the step"));
 }
 
+// ν goes with the square root of the shear rate, so bounds a hundredth and a hundred times the
+// typical one lie at 1e-4 and 1e4 times the typical rate.
+TEST(ViscosityOfAScene, SaysWhereALawThatThickensActs) {
+  const test::TemporaryFolder folder;
+  const Scene s =
+      scene_with(folder, "viscosity = {model = \"power_law\", consistency = 0.01, index = 1.5}");
+  double from = 0.0, to = 0.0;
+  for (const std::string& line : describe_viscosity(s, make_plan(s)))
+    if (const auto at = line.find("acts from"); at != std::string::npos)
+      EXPECT_EQ(std::sscanf(line.c_str() + at, "acts from %lf to %lf", &from, &to), 2) << line;
+  EXPECT_NEAR(from / typical_shear_rate(s), 1e-4, 2e-6);  // it is looked for in steps of 1 %
+  EXPECT_NEAR(to / typical_shear_rate(s), 1e4, 2e2);
+}
+
 // ρ G H/2 = 10 Pa at the walls of the slot.
 TEST(ViscosityOfAScene, WarnsOfAYieldStressThatNothingOvercomes) {
   const test::TemporaryFolder folder;
@@ -195,8 +209,9 @@ TEST(ViscosityOfAScene, WarnsOfAYieldStressThatNothingOvercomes) {
   EXPECT_FALSE(held("10.1", top + "\"moving_wall\"\nvelocity = [0.01, 0.0]\n"));
 }
 
-// Around discs of a periodic box it is their capacity, (4√2 + 2π) σ_y D; a drop of pressure along
-// walls Δp H/(2 L); a disc's weight against the same capacity.
+// Around discs of a periodic box it is at most their capacity, (4√2 + 2π) σ_y D, and the shear
+// between two rows of them, ρ G H/2; a drop of pressure along walls Δp H/(2 L); a disc's weight
+// against the same capacity.
 TEST(ViscosityOfAScene, KnowsWhatDiscsPressuresAndWeightsOvercome) {
   const test::TemporaryFolder folder;
   const auto held = [&](double yield, const std::string& box, const std::string& force,
@@ -214,9 +229,10 @@ TEST(ViscosityOfAScene, KnowsWhatDiscsPressuresAndWeightsOvercome) {
     return held(1.01 * limit, box, force, rest) && !held(0.99 * limit, box, force, rest);
   };
   const double disc = 4.0 * std::sqrt(2.0) + 2.0 * std::numbers::pi;
-  EXPECT_TRUE(at_limit(
-      2000.0 * 2e-4 / (disc * 0.004), "sides_x = \"periodic\"\nsides_y = \"periodic\"\n",
-      "body_force = [2.0, 0.0]\n", "[[obstacle]]\ncentre = [0.01, 0.005]\ndiameter = 0.004\n"));
+  EXPECT_TRUE(at_limit(2000.0 * (2e-4 / (disc * 0.004) + 0.5 * 0.01),
+                       "sides_x = \"periodic\"\nsides_y = \"periodic\"\n",
+                       "body_force = [2.0, 0.0]\n",
+                       "[[obstacle]]\ncentre = [0.01, 0.005]\ndiameter = 0.004\n"));
   EXPECT_TRUE(at_limit(8.0 * 0.01 / (2.0 * 0.02), "", "",
                        "[[boundary]]\nside = \"left\"\nkind = \"pressure\"\npressure = 8.0\n"
                        "[[boundary]]\nside = \"right\"\nkind = \"pressure\"\n"));
