@@ -91,9 +91,8 @@ struct ChoiceNames<SolidScheme> {
       {SolidScheme::SpringImmersedBoundary, "spring_immersed_boundary"}};
 };
 
-/// How the weight B of the solid's collision follows from the solid fraction ε of a cell; s = τ -
-/// ½:
-///   B = ε s / ((1 - ε) c(s) + s)
+/// How the weight B of the solid's collision follows from the solid fraction ε of a cell:
+///   B = ε s / ((1 - ε) c(s) + s),   s = τ - ½
 enum class WeightRule {
   Viscous,   ///< c = 1, paper A Eq 34
   Balanced,  ///< c = 1 - s/2

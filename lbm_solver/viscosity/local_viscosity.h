@@ -28,8 +28,8 @@ class LocalViscosity {
 
   /// Relaxation time of a cell that a solid covers in part. What the solid covers is not sheared:
   /// the stress of the cell is a part of that of its fluid (fluid_squares), and the law is its mean
-  /// over the stresses there (docs/viscosity.md). The closed form of Smagorinsky's model goes
-  /// without.
+  /// over the stresses there (docs/viscosity.md). Smagorinsky's closed form has no such
+  /// correction.
   /// @param q      second moments of the non-equilibrium populations
   /// @param fluid  part of the cell that is fluid
   /// @param eddies its share of the eddy viscosity (EddyField)
@@ -48,8 +48,9 @@ class LocalViscosity {
   /// plane that is parallel to an axis Q has the fluid's part t of the stress. Beside slanted
   /// planes components on the diagonal and the others have (measured, docs/viscosity.md)
   ///   t (1 - (1-t)⁴),   t (1 + 1/2 w t(1-t) - 7/10 (w + d) max(0, 1-2t)²)
-  /// d is the diagonal's share of Q_ab Q_ab, w that of flow along an edge of the slope: sin² of
-  /// twice the angle, which d is of flow down the slope.
+  ///   d = Σ Q_aa² / Q_ab Q_ab,   w = 16 (Q_xy² Q_xz² + Q_xy² Q_yz² + Q_xz² Q_yz²) / (Q_ab Q_ab)²
+  /// With φ the angle of the slope, d is sin² 2φ where the flow goes down the slope, and w where it
+  /// goes along an edge of it.
   /// @param squares  sum of the squares of the diagonal
   /// @param xy, xz, yz  the squares of the others
   /// @param t           0..1
@@ -88,7 +89,7 @@ class LocalViscosity {
 
  private:
   static constexpr double kLeastPart = 0.01;   // less of a cell says nothing of its stress
-  static constexpr double kNoStress = 1e-100;  // squared: nothing is sheared
+  static constexpr double kNoStress = 1e-100;  // floor of Q_ab Q_ab
 
   template <class L, class V>
   [[gnu::always_inline]] static V squares_in_cover(const Symmetric<L, V>& q, const V& fluid) {
