@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/coupling/obstacle_loads.h"
 
-#include <algorithm>
-
 namespace lbm {
+
 ObstacleLoads::ObstacleLoads(const Scene& scene, const Plan& plan, const Decomposition& ranks,
                              const std::string& folder, double keep_until)
     : units_(plan.units), ranks_(ranks), boxes_(obstacle_blocks(scene, plan)) {
