@@ -22,8 +22,8 @@ std::string flying_cluster() {
   return head() + discs +
          "set group all diameter 0.03 density 1000\nvelocity all set 2 1 0 units box\n" +
          model({1e5, 5e4, 60.0, 60.0, 0.05}, "bond/contact") + kBonds +
-         "fix move all nve/sphere\nfix flat all enforce2d\ntimestep 1e-5\n"
-         "thermo_modify lost ignore\nrun 10000\n"
+         "fix move all nve/sphere\nfix flat all enforce2d\ntimestep 4e-5\n"
+         "thermo_modify lost ignore\nrun 2500\n"
          "print \"atoms $(atoms) created $(f_breaks[4]) intact $(f_breaks[1]) broken "
          "$(f_breaks[2]+f_breaks[3]) left $(f_breaks[10]) lost $(f_breaks[11])\"\n";
 }
@@ -62,8 +62,8 @@ TEST(BondsThatLeave, AreKeptInRestartFiles) {
   const auto whole = script.run(flying_cluster());
   expect_ok(whole);
   expect_ok(
-      script.run(replaced(flying_cluster(), "run 10000\n", "run 6000\nwrite_restart half.rst\n")));
-  std::string again = replaced(flying_cluster(), "run 10000\n", "run 4000\n");
+      script.run(replaced(flying_cluster(), "run 2500\n", "run 1500\nwrite_restart half.rst\n")));
+  std::string again = replaced(flying_cluster(), "run 2500\n", "run 1000\n");
   const std::size_t from = again.find("region box"), to = again.find("fix contactNormalStiffness");
   again = again.substr(0, from) +
           "read_restart half.rst\nneighbor 0.02 bin\nneigh_modify delay 0\n" + again.substr(to);
@@ -179,7 +179,7 @@ friction = 0.4
 [numerics]
 cell = 0.0004
 [coupling]
-timeout = 20.0
+timeout = 100.0
 [run]
 end_time = 0.2
 [output]

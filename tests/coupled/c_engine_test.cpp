@@ -113,7 +113,7 @@ TEST(CInterface, AloneItSaysWhatToStart) {
   const auto job =
       test::run("exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun -np 1 " +
                     test::kBin + "/c_engine",
-                folder.path(), 30.0);
+                folder.path(), 50.0);
   EXPECT_EQ(job.exit_code, 2) << job.output;
   EXPECT_NE(job.output.find("c_engine | error | no fluid program was started beside it; start: "
                             "mpirun -np 1 lbm scene.toml : -np 1 c_engine"),

@@ -97,7 +97,7 @@ TEST_F(Clumps, TurnByTheTorqueOfTheirLoadsByMultisphereAndByRigidAlike) {
   const double ma = m * a * a * a, mb = m * b * b * b;
   const double inertia = 0.4 * (ma * a * a + mb * b * b) + ma * mb / (ma + mb) * apart * apart;
   folder_.write("two.txt", "-0.75 0 0 1.5\n1.62 0 0 0.9\n");
-  test::expect_end(run(multisphere("2000"), scene, 1, 1, "--out of_multisphere"), 100.0, 0, {});
+  test::expect_end(run(multisphere("2000"), scene, 1, 1, "--out of_multisphere"), 0, {});
   const auto spheres = rows("of_multisphere", false);
   ASSERT_GT(spheres.size(), 2U);
   std::string made;
@@ -110,7 +110,7 @@ TEST_F(Clumps, TurnByTheTorqueOfTheirLoadsByMultisphereAndByRigidAlike) {
   const std::string script =
       test::replaced(test::replaced(test::kClumpScript, "BODIES", made), weight,
                      weight + "neigh_modify exclude group all all\nfix move all rigid single\n");
-  test::expect_end(run_script(script, scene, 1, 1, "--out of_rigid"), 100.0, 0, {});
+  test::expect_end(run_script(script, scene, 1, 1, "--out of_rigid"), 0, {});
   // LIGGGHTS samples what fix multisphere has: volume to 0.3 %, inertia to 1 %.
   const auto sampled = rows("of_multisphere", true), exact = rows("of_rigid", true);
   const double by_samples = error_of_turn(sampled, inertia, kSpace);
@@ -140,7 +140,7 @@ clump = "0,0,0,0.001:0.00158,0,0,0.0006"
 cell = 0.0002
 [coupling]
 substeps = 3
-timeout = 30.0
+timeout = 100.0
 [run]
 end_time = 0.03
 )";
@@ -207,10 +207,10 @@ class FlatClump : public Clumps {
 };
 
 TEST_F(FlatClump, TurnsByRigidAsByAnEngine) {
-  test::expect_end(couple(kLiggghts + " -in in.liggghts", "of_rigid"), 100.0, 0, {});
+  test::expect_end(couple(kLiggghts + " -in in.liggghts", "of_rigid"), 0, {});
   const std::string engine =
       "/usr/bin/python3 " BPLBM_SOURCE_DIR "/tools/engines/python/clump_engine.py";
-  test::expect_end(couple(engine, "of_engine"), 100.0, 0, {});
+  test::expect_end(couple(engine, "of_engine"), 0, {});
   const Path rigid = rows("of_rigid", true);
   const Path other = rows_where("of_engine", [](double id) { return id == 1.0; });
   const double error = error_of_turn(rigid, inertia_, kPlane);
@@ -223,7 +223,7 @@ TEST_F(FlatClump, TurnsByRigidAsByAnEngine) {
 // fix gravity weighs the spheres, whatever the file of fix rigid says: a clump fell too fast by
 // what its spheres share.
 TEST_F(FlatClump, OfRigidWhoseDiscsWeighOtherwiseIsRefused) {
-  test::expect_end(couple(kLiggghts + " -in in.liggghts", "out", 1.01), 30.0, 2,
+  test::expect_end(couple(kLiggghts + " -in in.liggghts", "out", 1.01), 2,
                    {"fix gravity weighs the spheres of fix move rigid", "body 1 have 0.0064680",
                     "give the spheres densities with which both agree"});
 }

@@ -13,14 +13,13 @@
 
 namespace {
 
+using test::expect_end;
 using test::JobResult;
 using test::kLbm;
 using test::kLiggghts;
 using test::mpirun;
 using test::SettlingDisc;
 
-constexpr double kTimeout = 2.0;                             // of the scenes here [s]
-constexpr double kLimit = kTimeout + 10.0 * BPLBM_PATIENCE;  // for both programs to end
 const std::string kPeer = test::kBin + "/scripted_peer solid leave ";
 const std::string kPython =
     "env PYTHONPATH=" BPLBM_SOURCE_DIR "/protocol/python /usr/bin/python3 " BPLBM_SOURCE_DIR
@@ -39,10 +38,6 @@ class Scene : public SettlingDisc {
     return mpirun({kLbm + " --progress none", fluid_ranks}, {solid, solid_ranks});
   }
 };
-
-void expect_end(const JobResult& job, int exit_code, const std::vector<std::string>& words) {
-  test::expect_end(job, kLimit, exit_code, words);
-}
 
 // ---- a solid that leaves -----------------------------------------------------------------------
 
@@ -83,7 +78,7 @@ TEST_P(LeavingSolid, EndsTheFluidAtEveryStage) {
       continue;  // Python's and C's interfaces send their handshake and their answer at once
     jobs.emplace_back(&stage, std::async(std::launch::async, [&stage, &peer = peer, &how = how] {
       const Scene scene;
-      return test::run(scene.job(peer + stage.name + " " + how), scene.folder(), 30.0);
+      return test::run(scene.job(peer + stage.name + " " + how), scene.folder(), 50.0);
     }));
   }
   for (auto& [stage, result] : jobs) {
@@ -139,7 +134,7 @@ TEST(MisuseInC, IsNamedAtOnce) {
   for (const auto& [call, code, said] : calls)
     jobs.push_back(std::async(std::launch::async, [call = call] {
       const Scene scene;
-      return test::run(scene.job(kC + "misuse " + call), scene.folder(), 30.0);
+      return test::run(scene.job(kC + "misuse " + call), scene.folder(), 50.0);
     }));
   for (std::size_t k = 0; k < jobs.size(); ++k) {
     const auto& [call, code, said] = calls[k];
@@ -153,7 +148,7 @@ TEST(MisuseInC, IsNamedAtOnce) {
 TEST(PythonBlock, SaysGoodbyeWhenItIsLeft) {
   const Scene scene;
   for (const int ranks : {1, 2})
-    expect_end(test::run(scene.job(kPython + "block farewell", ranks), scene.folder(), 30.0), 0,
+    expect_end(test::run(scene.job(kPython + "block farewell", ranks), scene.folder(), 50.0), 0,
                {"ending       stopped by solid: leaving_peer ended"});
 }
 
@@ -162,7 +157,7 @@ TEST(FailingSolid, InCTellsTheFluidAtEveryStage) {
   for (const char* stage : {"connected", "agreed", "states", "running"})
     jobs.push_back(std::async(std::launch::async, [stage] {
       const Scene scene;
-      return test::run(scene.job(kC + stage + " fail"), scene.folder(), 30.0);
+      return test::run(scene.job(kC + stage + " fail"), scene.folder(), 50.0);
     }));
   for (auto& job : jobs)
     expect_end(job.get(), 42,
@@ -174,14 +169,14 @@ TEST(FailingSolid, InCTellsTheFluidAtEveryStage) {
 TEST(PythonStart, WaitsForAsLongAsTheSceneSays) {
   const Scene scene;
   const std::string solid = "env BPLBM_CONNECT_TIMEOUT=1 " + kPython + "late farewell";
-  expect_end(test::run(scene.job(solid, 1, 2), scene.folder(), 30.0), 0, {"ending       complete"});
+  expect_end(test::run(scene.job(solid, 1, 2), scene.folder(), 50.0), 0, {"ending       complete"});
 }
 
 TEST(LeavingFluid, EndsLiggghts) {
   Scene scene;
   const auto job =
       test::run(mpirun({test::kBin + "/scripted_peer fluid leave"}, {kLiggghts + " -screen none"}),
-                scene.folder(), 30.0);
+                scene.folder(), 50.0);
   expect_end(job, 1, {"liggghts | error | fluid rank 0 left without its handshake"});
 }
 
@@ -190,7 +185,7 @@ TEST(Disagreement, OfARecordingEndsBoth) {
   ASSERT_EQ(scene.run("--record trace.h5").exit_code, 0);
   scene.change_scene("depth = 1.0", "depth = 2.0");
   const auto job =
-      test::run(scene.job(test::kReplay + " --as solid trace.h5"), scene.folder(), 30.0);
+      test::run(scene.job(test::kReplay + " --as solid trace.h5"), scene.folder(), 50.0);
   expect_end(job, 2,
              {"lbm | error | fluid and solid disagree", "replay | error | fluid and solid"});
 }
@@ -219,14 +214,12 @@ class Stopped : public testing::TestWithParam<Phase> {
     return test::run("(" + job + ") & job=$!; " + phase.reached +
                          "; kill -STOP $(pgrep -x -P $job " + program + " | sort -n | sed -n " +
                          std::to_string(rank + 1) + "p); wait $job",
-                     scene.folder(), 40.0);
+                     scene.folder(), 50.0);
   }
 
   static void expect_named(const JobResult& result, const std::string& who) {
-    const double limit = kLimit + 5.0;  // of which until the stage is reached
     SCOPED_TRACE(who);
     EXPECT_FALSE(result.timed_out) << "hangs: " << result.output;
-    EXPECT_LT(result.seconds, limit * BPLBM_PATIENCE) << result.output;
     EXPECT_EQ(result.exit_code, 1) << result.output;
     EXPECT_NE(result.output.find("| error | " + who + " does not answer"), std::string::npos)
         << result.output;
@@ -276,7 +269,7 @@ TEST(StoppedFluidAlone, IsNamedByItsNeighbour) {
   expect_end(test::run("(" + job +
                            ") & job=$!; sleep 1.5; kill -STOP $(pgrep -x -P $job lbm | "
                            "sort -n | sed -n 2p); wait $job",
-                       folder.path(), 40.0),
+                       folder.path(), 50.0),
              1, {"lbm | error | fluid rank 1 does not answer"});
 }
 
@@ -286,10 +279,8 @@ TEST(EndlessScript, EndsWithTheTimeOut) {
   scene.set_script("label a\njump SELF a\n");
   const auto job =
       test::run("taskset -c 0 sh -c '" + scene.job(kLiggghts + " -screen none -log none") + "'",
-                scene.folder(), 30.0);
+                scene.folder(), 50.0);
   expect_end(job, 1, {"no answer from solid rank 0 for 2 s while waiting for its handshake"});
-  // start, time-out, a second, farewell and the end by mpirun
-  EXPECT_LT(job.seconds, (1.5 + kTimeout + 1.0 + 3.0 + 2.5) * BPLBM_PATIENCE) << job.output;
 }
 
 // ---- libraries that know the world only --------------------------------------------------------
@@ -325,7 +316,7 @@ bool needs_another(const std::string& name) {
 TEST(WorldOfALibrary, IsItsOwnProgramInEveryCall) {
   const test::TemporaryFolder folder;
   const std::string caller = test::kBin + "/world_caller";
-  const auto job = test::run(mpirun({caller + " idle"}, {caller, 2}), folder.path(), 30.0);
+  const auto job = test::run(mpirun({caller + " idle"}, {caller, 2}), folder.path(), 50.0);
   expect_end(job, 0, {});
   for (const char* name : {
 #define X(name) #name,

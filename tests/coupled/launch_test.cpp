@@ -6,34 +6,31 @@
 
 namespace {
 
+using test::expect_end;
 using test::JobResult;
 using test::kLbm;
 using test::kLiggghts;
 using test::mpirun;
 using test::SettlingDisc;
 
-void expect_end(const JobResult& job, int exit_code, const std::vector<std::string>& words) {
-  test::expect_end(job, 10.0 * BPLBM_PATIENCE, exit_code, words);
-}
-
 TEST(Launch, TheFluidAlone) {
   SettlingDisc scene;
-  expect_end(test::run(kLbm, scene.folder(), 30.0), 2, {"no solid program was started beside lbm"});
+  expect_end(test::run(kLbm, scene.folder(), 50.0), 2, {"no solid program was started beside lbm"});
 }
 
 TEST(Launch, TheSolidAlone) {
   SettlingDisc scene;
-  const auto line = test::run(kLbm + " check --liggghts-vars", scene.folder(), 20.0);
+  const auto line = test::run(kLbm + " check --liggghts-vars", scene.folder(), 50.0);
   std::string variables = line.output;
   variables.erase(variables.find_last_not_of('\n') + 1);
   const std::string as_root = "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; ";
-  expect_end(test::run(as_root + kLiggghts + " -in in.liggghts " + variables, scene.folder(), 30.0),
+  expect_end(test::run(as_root + kLiggghts + " -in in.liggghts " + variables, scene.folder(), 50.0),
              1, {"no fluid program was started beside liggghts"});
 }
 
 TEST(Launch, TheFluidTwice) {
   SettlingDisc scene;
-  expect_end(test::run(mpirun({kLbm}, {kLbm}), scene.folder(), 30.0), 2,
+  expect_end(test::run(mpirun({kLbm}, {kLbm}), scene.folder(), 50.0), 2,
              {"no solid program was started beside lbm"});
 }
 
@@ -41,27 +38,27 @@ TEST(Launch, TheFluidTwice) {
 TEST(Launch, AProgramThatEndsBeforeItsMpiInit) {
   SettlingDisc scene;
   const std::string hurry = "export BPLBM_CONNECT_TIMEOUT=3; ";
-  expect_end(test::run(hurry + mpirun({kLbm}, {"sleep 40"}), scene.folder(), 30.0), 1,
+  expect_end(test::run(hurry + mpirun({kLbm}, {"sleep 90"}), scene.folder(), 50.0), 1,
              {"lbm | error | MPI has not begun within 3 s: another program of this mpirun"});
-  expect_end(test::run(hurry + mpirun({"sleep 40"}, {kLiggghts + " -in in.liggghts"}),
-                       scene.folder(), 30.0),
+  expect_end(test::run(hurry + mpirun({"sleep 90"}, {kLiggghts + " -in in.liggghts"}),
+                       scene.folder(), 50.0),
              1, {"liggghts | error | MPI has not begun within 3 s"});
 }
 
 TEST(Launch, TheSolidTwice) {
   SettlingDisc scene;
-  const auto line = test::run(kLbm + " check --liggghts-vars", scene.folder(), 20.0);
+  const auto line = test::run(kLbm + " check --liggghts-vars", scene.folder(), 50.0);
   std::string variables = line.output;
   variables.erase(variables.find_last_not_of('\n') + 1);
   const std::string solid = kLiggghts + " -in in.liggghts " + variables;
-  expect_end(test::run(mpirun({solid}, {solid}), scene.folder(), 30.0), 1,
+  expect_end(test::run(mpirun({solid}, {solid}), scene.folder(), 50.0), 1,
              {"no fluid program was started beside liggghts"});
 }
 
 TEST(Launch, TheSystemsStockLiggghts) {
   SettlingDisc scene;
   scene.change_scene("timeout = 60.0", "timeout = 60.0\nconnect_timeout = 3.0");
-  expect_end(test::run(mpirun({kLbm}, {"/usr/bin/liggghts -in in.liggghts"}), scene.folder(), 30.0),
+  expect_end(test::run(mpirun({kLbm}, {"/usr/bin/liggghts -in in.liggghts"}), scene.folder(), 50.0),
              1,
              {"lbm | error | rank(s) 1 of this MPI job did not say within 3 s",
               "the system's stock liggghts cannot couple", "coupling.connect_timeout = SECONDS"});
@@ -76,7 +73,7 @@ TEST(Launch, AStranger) {
   ASSERT_EQ(test::run("mpicc stranger.c -o stranger", folder.path(), 60.0).exit_code, 0);
   expect_end(test::run("export BPLBM_CONNECT_TIMEOUT=3; " +
                            mpirun({folder.path() + "/stranger"}, {kLiggghts + " -screen none"}),
-                       scene.folder(), 30.0),
+                       scene.folder(), 50.0),
              1, {"liggghts | error | rank(s) 0 of this MPI job did not say"});
 }
 
@@ -85,11 +82,11 @@ TEST(Launch, ASlowEngineIsWaitedForAsLongAsTheSceneSays) {
   SettlingDisc scene;
   const std::string slow = test::kBin + "/leaving_solid slow 3";  // ranks 1 and 2 of the job
   scene.change_scene("timeout = 60.0", "timeout = 60.0\nconnect_timeout = 2.0");
-  expect_end(test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0), 1,
+  expect_end(test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 50.0), 1,
              {"lbm | error | rank(s) 1 2 of this MPI job did not say within 2 s",
               "coupling.connect_timeout = SECONDS in the scene"});
   scene.change_scene("connect_timeout = 2.0", "connect_timeout = 20.0");
-  const auto job = test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 30.0);
+  const auto job = test::run(mpirun({kLbm}, {slow, 2}), scene.folder(), 50.0);
   EXPECT_EQ(job.exit_code, 0) << job.output;
 }
 

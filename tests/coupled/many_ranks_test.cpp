@@ -148,7 +148,7 @@ TEST(ManyFluidRanks, AloneWithFieldsAndPoints) {
         "OMPI_MCA_mpi_yield_when_idle=1 mpirun --bind-to none --oversubscribe -np " +
             std::to_string(ranks) + " " + test::kLbm + " " + scene + " " + overlay +
             " --progress none --out " + out,
-        folder.path(), 30.0);
+        folder.path(), 50.0);
     ASSERT_EQ(result.exit_code, 0) << result.output;
   };
   start("one", 1);
@@ -157,7 +157,7 @@ TEST(ManyFluidRanks, AloneWithFieldsAndPoints) {
     EXPECT_EQ(test::read_file(folder.path() + "/one/" + name),
               test::read_file(folder.path() + "/three/" + name))
         << name;
-  const JobResult same = test::run("h5diff one/fields.h5 three/fields.h5", folder.path(), 30.0);
+  const JobResult same = test::run("h5diff one/fields.h5 three/fields.h5", folder.path(), 50.0);
   EXPECT_EQ(same.exit_code, 0) << same.output;
 }
 
@@ -214,7 +214,7 @@ TEST(ManyFluidRanks, AreRefusedWhereTheyCannotWork) {
         "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
         "OMPI_MCA_mpi_yield_when_idle=1 mpirun --bind-to none --oversubscribe -np 2 " +
             test::kLbm + " " + cases + arguments,
-        folder.path(), 30.0);
+        folder.path(), 50.0);
   };
   for (const char* name : {"bounce_back", "interpolated_bounce_back", "implicit_immersed_boundary",
                            "spring_immersed_boundary"}) {

@@ -122,7 +122,7 @@ TEST_F(OutputTest, ATableThatIsDeletedMeanwhileIsAnError) {
       test::run(kRoot + "(" + kLbm +
                     " --progress none) & job=$!; until [ -s out/points.csv ]; do sleep "
                     "0.02; done; rm out/points.csv; wait $job",
-                folder_.path(), 30.0);
+                folder_.path(), 50.0);
   expect_end(job, 1, {"points.csv was deleted while the run was writing it"});
 }
 

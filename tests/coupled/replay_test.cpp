@@ -45,7 +45,7 @@ TEST_F(ReplayTest, ARecordingOfTheSolidReplaysAsWell) {
   const auto recording = scene_.run();
   ASSERT_EQ(recording.exit_code, 0) << recording.output;
   expect_identical(job(kLbm, {kReplay + " --as solid solid.h5"}));
-  const auto diff = test::run(test::kBin + "/trace diff trace.h5 solid.h5", scene_.folder(), 20.0);
+  const auto diff = test::run(test::kBin + "/trace diff trace.h5 solid.h5", scene_.folder(), 50.0);
   EXPECT_EQ(diff.exit_code, 0) << diff.output;  // both sides saw the same exchange
 }
 
@@ -59,14 +59,14 @@ TEST_F(ReplayTest, AnotherFluidIsNoticedWithTheFirstDifference) {
 }
 
 TEST_F(ReplayTest, InfoAndDiffSpeak) {
-  const auto info = test::run(test::kBin + "/trace info trace.h5", scene_.folder(), 20.0);
+  const auto info = test::run(test::kBin + "/trace info trace.h5", scene_.folder(), 50.0);
   EXPECT_EQ(info.exit_code, 0);
   for (const char* word :
        {"recorded by the fluid program", "1 … 1 particles", "ending    complete"})
     EXPECT_NE(info.output.find(word), std::string::npos) << info.output;
   scene_.change_scene("\"layered_resistance\"", "\"noble_torczynski\"");
   ASSERT_EQ(scene_.run("--record other.h5").exit_code, 0);
-  const auto diff = test::run(test::kBin + "/trace diff trace.h5 other.h5", scene_.folder(), 20.0);
+  const auto diff = test::run(test::kBin + "/trace diff trace.h5 other.h5", scene_.folder(), 50.0);
   EXPECT_EQ(diff.exit_code, 1) << diff.output;
   EXPECT_NE(diff.output.find("first difference at interval"), std::string::npos) << diff.output;
 }
@@ -78,9 +78,9 @@ TEST(CutOffRecording, IsReadableAndReplaysToWhereItEnds) {
       test::mpirun({kLbm + " --record cut.h5 --progress none"}, {kLiggghts + " -screen none"});
   const auto killed =
       test::run("(" + job + ") & job=$!; sleep 3; pkill -KILL -x -P $job lbm; wait $job",
-                scene.folder(), 30.0);
+                scene.folder(), 50.0);
   EXPECT_FALSE(killed.timed_out);
-  const auto info = test::run(test::kBin + "/trace info cut.h5", scene.folder(), 20.0);
+  const auto info = test::run(test::kBin + "/trace info cut.h5", scene.folder(), 50.0);
   EXPECT_EQ(info.exit_code, 0) << info.output << killed.output;
   EXPECT_NE(info.output.find("cut off"), std::string::npos) << info.output;
   const auto result =

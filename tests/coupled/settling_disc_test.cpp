@@ -129,7 +129,7 @@ TEST(SettlingDiscCoupled, FirstStateIsTheStartAndTheLastCarriesItsFlag) {
 /// Numbers of an array in a frame of the fields.
 std::vector<double> frame_values(const SettlingDisc& scene, const std::string& path) {
   const auto dump = test::run("h5dump -y -w 1 -d " + path + " out/fields.h5 | grep -E '^ +[-0-9n]'",
-                              scene.folder(), 20.0);
+                              scene.folder(), 50.0);
   std::vector<double> values;
   std::istringstream lines(dump.output);
   for (std::string line; std::getline(lines, line);) values.push_back(std::stod(line));
@@ -218,7 +218,7 @@ TEST(SettlingDiscCoupled, VariablesOfTheCommandLineComeFirst) {
 TEST(SettlingDiscCoupled, TheVariablesThatCheckPrintsAreThoseOfARun) {
   SettlingDisc scene;
   const auto line =
-      test::run(test::kLbm + " check --liggghts-vars scene.toml", scene.folder(), 20.0);
+      test::run(test::kLbm + " check --liggghts-vars scene.toml", scene.folder(), 50.0);
   ASSERT_EQ(line.exit_code, 0) << line.output;
   std::string variables = line.output;
   variables.erase(variables.find_last_not_of('\n') + 1);

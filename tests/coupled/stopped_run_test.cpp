@@ -174,7 +174,7 @@ TEST_F(StoppedRunTest, RemembersItsBrokenBonds) {
   const JobResult bonds = test::run(
       "last=$(h5ls parts/fields.h5 | awk '/frame/ {print $1}' | tail -n 1); h5dump -d "
       "/$last/bond_state -w 1 parts/fields.h5 | grep -c '(.*): [12]'",
-      folder_.path(), 30.0);
+      folder_.path(), 50.0);
   EXPECT_GE(std::stol("0" + bonds.output), static_cast<long>(broken_before) - 1) << bonds.output;
 }
 

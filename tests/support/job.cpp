@@ -65,7 +65,6 @@ JobResult run(const std::string& command, const std::string& folder, double limi
   drain();
   kill(-child, SIGKILL);  // nothing it started may outlive it
   close(ends[0]);
-  result.seconds = elapsed();
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
 }

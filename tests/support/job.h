@@ -10,8 +10,7 @@ namespace test {
 struct JobResult {
   int exit_code = -1;      ///< 128 + signal where a signal ended it
   bool timed_out = false;  ///< it was killed, with everything it had started
-  double seconds = 0.0;
-  std::string output;  ///< stdout and stderr together
+  std::string output;      ///< stdout and stderr together
 };
 
 /// Runs a shell command in `folder`.
