@@ -98,12 +98,12 @@ TEST_F(BreakingBlock, Slow_SerialGoesOnToTheBit) {
 TEST_F(CheckpointTest, ASignalEndsBothWithACheckpoint) {
   use("settling_disc",
       "[run]\nend_time = 1.0\ncheckpoint_every = 10.0\n[numerics]\n"
-      "cells_per_diameter = 40\n[output]\nfields_every = 1.0\n");
+      "cells_per_diameter = 20\n[output]\nfields_every = 1.0\n");
   expect_ok(run("whole"));
   const JobResult cut =
       test::run("(" + job("parts", "") +
                     ") & job=$!; until [ -s parts/probes.csv ]; do sleep 0.05; "
-                    "done; sleep 0.4; pkill -TERM -x -P $job lbm; wait $job; echo code $?",
+                    "done; sleep 0.2; pkill -TERM -x -P $job lbm; wait $job; echo code $?",
                 folder_.path(), 60.0);
   EXPECT_NE(cut.output.find("code 1"), std::string::npos) << cut.output;
   EXPECT_NE(cut.output.find("stopped by a signal; --restart goes on"), std::string::npos)

@@ -308,6 +308,7 @@ class EngineRestart : public testing::TestWithParam<const char*> {
     folder_.write("overlay.toml",
                   "[particles]\nstart = [[0.01, 0.005]]\n[numerics]\ncells_per_diameter = 10\n"
                   "[run]\nend_time = 0.3\ncheckpoint_every = 0.1\n");
+    folder_.write("short.toml", "[run]\nend_time = 0.12\ncheckpoint_every = 0.05\n");
   }
   /// @param before  of the engine's command
   test::JobResult run(const std::string& options, const std::string& before = "") const {
@@ -334,11 +335,11 @@ TEST_P(EngineRestart, GoesOnToTheBit) {
 }
 
 TEST_P(EngineRestart, ADamagedPartEndsBoth) {
-  expect_ok("--out out --until 0.15");
+  expect_ok("short.toml --out out --until 0.06");
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path() + "/out"))
     if (entry.path().extension() == ".solid")
       folder_.write("out/" + entry.path().filename().string(), "garbage");
-  const test::JobResult job = run("--out out --restart");
+  const test::JobResult job = run("short.toml --out out --restart");
   EXPECT_FALSE(job.timed_out);
   EXPECT_EQ(job.exit_code, 2) << job.output;
   EXPECT_NE(job.output.find("is damaged, or another file than the solid wrote"), std::string::npos)
@@ -346,15 +347,15 @@ TEST_P(EngineRestart, ADamagedPartEndsBoth) {
 }
 // LAMMPS and LIGGGHTS do not look whether their writes succeed.
 TEST_P(EngineRestart, AFullDiskOfTheSolidLeavesTheCheckpointBefore) {
-  expect_ok("--out whole");
-  expect_ok("--out parts --until 0.15");
-  const test::JobResult cut =
-      run("--out parts --restart", "sh " BPLBM_SOURCE_DIR "/tests/support/short_of_disk.sh 0 ");
+  expect_ok("short.toml --out whole");
+  expect_ok("short.toml --out parts --until 0.06");
+  const test::JobResult cut = run("short.toml --out parts --restart",
+                                  "sh " BPLBM_SOURCE_DIR "/tests/support/short_of_disk.sh 0 ");
   EXPECT_EQ(cut.exit_code, 1) << cut.output;
   EXPECT_NE(cut.output.find("lbm | error | the solid program stopped: "), std::string::npos)
       << cut.output;
-  EXPECT_NE(cut.output.find("checkpoint.480.solid"), std::string::npos) << cut.output;
-  expect_ok("--out parts --restart");
+  EXPECT_NE(cut.output.find("checkpoint.240.solid"), std::string::npos) << cut.output;
+  expect_ok("short.toml --out parts --restart");
   EXPECT_EQ(test::read_file(folder_.path() + "/parts/probes.csv"),
             test::read_file(folder_.path() + "/whole/probes.csv"));
 }

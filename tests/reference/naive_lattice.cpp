@@ -26,6 +26,17 @@ NaiveLattice::NaiveLattice(const Domain& domain, const lbm::KernelChoice& choice
     for (int b = 0; b < 3; ++b)
       for (int c = 0; c < (l_.D == 3 ? 3 : 1); ++c)
         if (l_.Q != 19 || a * b * c == 0) powers_.push_back({a, b, c});
+  Matrix hermite(l_.Q, l_.Q);
+  for (int m = 0; m < l_.Q; ++m)
+    for (int i = 0; i < l_.Q; ++i) {
+      double polynomial = 1.0;
+      for (int a = 0; a < 3; ++a) {
+        const double v = l_.c[i][a];
+        polynomial *= powers_[m][a] == 0 ? 1.0 : powers_[m][a] == 1 ? v : v * v - 1.0 / 3;
+      }
+      hermite(m, i) = polynomial;
+    }
+  from_hermite_ = hermite.inverse();
 }
 
 Vec3 NaiveLattice::c(int i) const {
@@ -103,17 +114,19 @@ Eigen::Matrix3d NaiveLattice::stress(const Cell& f, const Cell& eq, const Vec3& 
 Cell NaiveLattice::central_moments(const Cell& f, double rho, const Vec3& u, double omega) const {
   const Vec3 force = body_force();
   const int n = l_.Q;
-  Eigen::MatrixXd to_moments(n, n);
-  Eigen::VectorXd populations(n), after = Eigen::VectorXd::Zero(n);
+  Matrix to_moments(n, n);
+  Vector populations(n), after = Vector::Zero(n);
   for (int i = 0; i < n; ++i) {
     populations[i] = f[i];
+    const Vec3 v = c(i) - u;
     for (int m = 0; m < n; ++m) {
       double product = 1.0;
-      for (int a = 0; a < 3; ++a) product *= std::pow(c(i)[a] - u[a], powers_[m][a]);
+      for (int a = 0; a < 3; ++a)
+        for (int times = 0; times < powers_[m][a]; ++times) product *= v[a];
       to_moments(m, i) = product;
     }
   }
-  const Eigen::VectorXd before = to_moments * populations;
+  const Vector before = to_moments * populations;
   double trace = 0.0;
   for (int m = 0; m < n; ++m) {
     const auto& p = powers_[m];
@@ -134,7 +147,7 @@ Cell NaiveLattice::central_moments(const Cell& f, double rho, const Vec3& u, dou
     if (order == 2 && ones == 0) after[m] += (1.0 - omega) * (before[m] - trace / l_.D);
     if (order == 2 && ones == 2) after[m] = (1.0 - omega) * before[m];
   }
-  populations = to_moments.fullPivLu().solve(after);
+  populations = to_moments.partialPivLu().solve(after);
   Cell out{};
   for (int i = 0; i < n; ++i) out[i] = populations[i];
   return out;
@@ -145,8 +158,7 @@ Cell NaiveLattice::central_moments(const Cell& f, double rho, const Vec3& u, dou
 Cell NaiveLattice::recursive_regularised(double rho, const Vec3& u, const Eigen::Matrix3d& q,
                                          const Cell& force, double omega) const {
   const int n = l_.Q;
-  Eigen::MatrixXd to_moments(n, n);
-  Eigen::VectorXd wanted(n);
+  Vector wanted(n);
   for (int m = 0; m < n; ++m) {
     std::vector<int> indices;  // xxy is {0, 0, 1}
     for (int a = 0; a < 3; ++a) indices.insert(indices.end(), powers_[m][a], a);
@@ -160,16 +172,8 @@ Cell NaiveLattice::recursive_regularised(double rho, const Vec3& u, const Eigen:
         kept += product;
       }
     wanted[m] = whole + (1.0 - omega) * kept;
-    for (int i = 0; i < n; ++i) {
-      double polynomial = 1.0;
-      for (int a = 0; a < 3; ++a) {
-        const double v = c(i)[a];
-        polynomial *= powers_[m][a] == 0 ? 1.0 : powers_[m][a] == 1 ? v : v * v - 1.0 / 3;
-      }
-      to_moments(m, i) = polynomial;
-    }
   }
-  const Eigen::VectorXd populations = to_moments.fullPivLu().solve(wanted);
+  const Vector populations = from_hermite_ * wanted;
   Cell out{};
   for (int i = 0; i < n; ++i) out[i] = populations[i] + 0.5 * force[i];
   return out;

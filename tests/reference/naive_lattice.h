@@ -3,6 +3,7 @@
 /// and meant to be compared with.
 #pragma once
 
+#include <Eigen/Dense>
 #include <array>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ struct NaiveCover {
 class NaiveLattice {
  public:
   using Cell = std::array<double, 27>;  // of which a lattice uses its Q
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 27, 27>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 27, 1>;
 
   NaiveLattice(const Domain& domain, const lbm::KernelChoice& choice);
 
@@ -71,6 +74,7 @@ class NaiveLattice {
   lbm::KernelChoice choice_;
   const lbm::Lattice& l_;
   std::vector<std::array<int, 3>> powers_;  // of the moments that the lattice has
+  Matrix from_hermite_;                     // populations from moments of Hermite polynomials
   std::vector<Cell> f_;
   std::vector<NaiveCover> cover_;
   std::vector<Vec3> force_;
