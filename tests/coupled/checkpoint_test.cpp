@@ -97,7 +97,7 @@ TEST_F(BreakingBlock, Slow_SerialGoesOnToTheBit) {
 
 TEST_F(CheckpointTest, ASignalEndsBothWithACheckpoint) {
   use("settling_disc",
-      "[run]\nend_time = 1.0\ncheckpoint_every = 10.0\n[numerics]\n"
+      "[run]\nend_time = 0.5\ncheckpoint_every = 10.0\n[numerics]\n"
       "cells_per_diameter = 20\n[output]\nfields_every = 1.0\n");
   expect_ok(run("whole"));
   const JobResult cut =
