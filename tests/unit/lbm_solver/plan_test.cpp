@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/io/scene_reader.h"
@@ -41,6 +42,30 @@ TEST(Plan, ChoosesTheStepByRelaxationTimeWhereTheFluidIsViscous) {
   EXPECT_NE(p.step_limit.find("relaxation"), std::string::npos);
   EXPECT_LE(p.kernel.parameters.tau, 1.5 + 1e-12);
   EXPECT_GT(p.kernel.parameters.tau, 1.49);
+}
+
+// A remedy that the binding limit would undo is none.
+TEST(Plan, AdvisesByWhatBindsTheStep) {
+  const auto refused = [](const Scene& s, const std::string& words) {
+    try {
+      make_plan(s);
+      ADD_FAILURE() << "accepted where expected: " << words;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  Scene s = settling_disc();
+  s.fluid.viscosity = 1e-13;
+  refused(s, "a lower fluid.velocity_scale if nothing is that fast");
+  s.numerics.time_step = 1e-4;
+  refused(s, "a longer numerics.time_step");
+  s = settling_disc();
+  s.end_time = 1e10;
+  refused(s, "or a smaller fluid.velocity_scale");
+  s.fluid.viscosity = 1e-3;  // τ binds
+  refused(s, "is the viscosity in m²/s?");
+  s.numerics.time_step = 1e-4;
+  refused(s, "or a longer numerics.time_step");
 }
 
 TEST(Plan, WarnsWhereForcesGetNoisyAndWhereCellsAreFew) {
