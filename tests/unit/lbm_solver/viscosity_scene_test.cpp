@@ -340,6 +340,13 @@ TEST(ViscosityOfAScene, WarnsOfALawThatDoesNotAct) {
   const test::TemporaryFolder folder;
   const Plan plan = make_plan(scene_with(folder, kGel + ", nu_min = 1e-5, nu_max = 1e-4}"));
   EXPECT_TRUE(warns(plan, "the law does not act"));
+  // at the walls of this channel, 400 1/s, the law has 2.5e-5 m²/s
+  EXPECT_FALSE(warns(plan, "flow rate of a plane channel"));
+  const auto bounds = [&](const std::string& both) {
+    return make_plan(scene_with(folder, kGel + ", " + both + "}"));
+  };
+  EXPECT_TRUE(warns(bounds("nu_min = 1e-5, nu_max = 3e-5"), "take a larger nu_max"));
+  EXPECT_TRUE(warns(bounds("nu_min = 1e-4, nu_max = 1e-2"), "take a smaller nu_min"));
 }
 
 TEST(ViscosityOfAScene, WarnsOfOperatorsThatDoNotFitAYieldStress) {
