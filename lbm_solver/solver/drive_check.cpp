@@ -138,14 +138,16 @@ void check_lag(const Scene& s, const BoundaryScene& b, Plan& plan) {
   const bool solids = !s.obstacles.empty() || s.coupling;
   plan.warnings.push_back(fmt::format(
       "boundary.flow_rate follows what is slow beside {:.3g} s, eight crossings of the box by "
-      "sound: of a flow with a period of {:.3g} s some {:.0f} % comes, {:.2g} of a period late{}; "
+      "sound: of a flow with a period of {:.3g} s some {:.0f} % comes, {:.2g} of a period {}{}; "
       "take a longer period, or a boundary of kind \"velocity\", whose flow follows at once",
-      PressureControl::time(cells) * plan.units.dt, period, 100.0 * amplitude, late,
+      PressureControl::time(cells) * plan.units.dt, period, 100.0 * amplitude, std::abs(late),
+      late < 0.0 ? "early" : "late",
       solids ? " in an empty box, and much less through solids" : ""));
 }
 
-/// What can be done against round-off: parts of the force fall with the square of a longer step,
-/// and with the cell to the power of d + 2 where τ binds the step.
+/// What can be done against round-off. Its part falls with the square of a longer step; with the
+/// cell to the power of d where the step grows with the cell, of d + 2 where τ binds it and it
+/// grows with the cell's area.
 std::string way_out_of_round_off(const Scene& s, const Plan& plan, double width, double part) {
   const double longer = plan.units.dt * std::sqrt(kMargin * part / kMuchRoundOff);
   const double by_tau = plan.units.dx * plan.units.dx / (3.0 * s.fluid.viscosity);  // τ = 1.5
@@ -154,9 +156,13 @@ std::string way_out_of_round_off(const Scene& s, const Plan& plan, double width,
   const double scale = kWarnSpeed * plan.units.dx / longer;
   if (longer <= by_tau && plan.step_bound == StepBound::Speed && scale > kRoom * mean_speed(s))
     return fmt::format("take fluid.velocity_scale = {:.2g} m/s", scale);
-  const double cell =
-      plan.units.dx * std::pow(kMargin * part / kMuchRoundOff, 1.0 / (s.box.dimension + 2));
-  if (width > kThinChannel * cell) return fmt::format("take cells of {:.2g} m or more", cell);
+  const int power = s.box.dimension + (plan.step_bound == StepBound::Relaxation ? 2 : 0);
+  const double cell = plan.units.dx * std::pow(kMargin * part / kMuchRoundOff, 1.0 / power);
+  if (width > kThinChannel * cell)
+    return fmt::format("take cells of {:.2g} m or more{}", cell,
+                       plan.step_bound == StepBound::Given
+                           ? " and a numerics.time_step that is as much longer"
+                           : "");
   return fmt::format("give fluid.body_force in its place, {:.3g} m/s² in a channel without solids",
                      12.0 * s.fluid.viscosity * mean_speed(s) / (width * width));
 }

@@ -158,9 +158,11 @@ TEST(HeldOpening, SaysHowFarItFollowsAnOscillation) {
   const auto has = [&](const std::string& keys, const std::string& words) {
     return said(keys).find(words) != std::string::npos;
   };
-  EXPECT_TRUE(has("frequency = 0.515", "with a period of 1.94 s some 51 % comes, 0.15 of a period late"))
+  EXPECT_TRUE(
+      has("frequency = 0.515", "with a period of 1.94 s some 51 % comes, 0.15 of a period late"))
       << said("frequency = 0.515");
-  EXPECT_TRUE(has("table = \"tide.csv\"\nrepeat = \"periodic\"", "some 51 % comes, 0.15 of a period late"));
+  EXPECT_TRUE(
+      has("table = \"tide.csv\"\nrepeat = \"periodic\"", "some 51 % comes, 0.15 of a period late"));
   EXPECT_FALSE(has("frequency = 0.003", "comes"));
 }
 
@@ -206,6 +208,14 @@ TEST(HeldFlow, AdvisesAgainstRoundOffWhatCanBeDone) {
   Scene given = scene("1e-6", "4e-15");
   given.numerics.time_step = 1e-3;
   given.numerics.time_step = number_after(said(given), "take numerics.time_step = ");
+  EXPECT_EQ(said(given), "");
+  given.numerics.time_step = 2.5e-3;  // as long as velocity_scale lets it be
+  given.fluid.flow->rate = 1e-15;
+  const double larger = number_after(said(given), "take cells of ");
+  ASSERT_GT(larger, 0.0) << said(given);
+  EXPECT_LE(larger, 0.00125);
+  given.numerics.time_step = 2.5e-3 * 0.00125 / 0.0005;
+  given.numerics.cell = 0.00125;
   EXPECT_EQ(said(given), "");
   EXPECT_NE(said(scene("1e-2", "1e-22")).find("give fluid.body_force in its place, 1.2e-17 m/s²"),
             std::string::npos)
