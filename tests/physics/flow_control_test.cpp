@@ -192,8 +192,8 @@ double held_amplitude(double tau, int length, double period) {
   return std::abs(sum) / (speed * kHeight);
 }
 
-// The balance of the first harmonic (held_lag.h), in a channel that resists a quarter as much as the
-// opening is stiff, and in one that hardly does and overshoots: off by up to 0.014.
+// The balance of the first harmonic (held_lag.h), in a channel that resists a quarter as much as
+// the opening is stiff, and in one that hardly does and overshoots: off by up to 0.014.
 TEST(PressureControl, FollowsAnOscillationAsFarAsItSays) {
   constexpr int length = 48;
   const double time = PressureControl::time(length);
