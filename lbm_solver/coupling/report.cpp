@@ -163,10 +163,14 @@ void report_fluid(const Scene& s, const Plan& p, Report& report) {
   report.line("fluid", fmt::format("ρ {:.6g} kg/m³, ν {:.6g} m²/s, τ = {:.6g}", s.fluid.density,
                                    s.fluid.viscosity, p.kernel.parameters.tau));
   for (const std::string& text : describe_viscosity(s, p)) report.line("viscosity", text);
-  report.line("numbers",
-              fmt::format("Re {:.4g}, Re_h {:.3g}, Ma = u/c_s {:.3g}, u/C {:.3g} at u = {:.4g} m/s",
-                          p.reynolds, p.reynolds_cell, p.u_over_c * std::numbers::sqrt3, p.u_over_c,
-                          s.fluid.velocity_scale));
+  report.line(
+      "numbers",
+      fmt::format("Re = u L/ν {:.4g} with L = {:.4g} m of {}{}, Re_h = u Δx/ν {:.3g}, Ma = u/c_s "
+                  "{:.3g}, u/C {:.3g} at u = {:.4g} m/s",
+                  p.reynolds, p.reynolds_length, p.reynolds_of,
+                  p.kernel.parameters.viscosity_table ? " and ν at the typical shear rate" : "",
+                  p.reynolds_cell, p.u_over_c * std::numbers::sqrt3, p.u_over_c,
+                  s.fluid.velocity_scale));
 }
 
 void report_solids(const Scene& s, const Plan& p, Report& report) {

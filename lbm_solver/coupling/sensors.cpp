@@ -96,8 +96,9 @@ class PlaneSensor final : public Sensor {
   }
 };
 
-/// Flow through the plane next to a side, one cell inside, and the mean force on its walls since
-/// the row before.
+/// Flow through the plane next to a side, one cell inside, as a plane sensor there has it in the
+/// row of the same time, and the mean force on its walls since the row before. What crosses the
+/// plane has come through the side a step earlier: of a sudden start the first row shows nothing.
 class SideSensor final : public Sensor {
  public:
   using Sensor::Sensor;

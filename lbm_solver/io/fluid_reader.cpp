@@ -36,7 +36,8 @@ ViscosityScene read_viscosity(TableReader t) {
   v.model = known_viscosities()[std::ranges::find(names, name) - names.begin()];
   refuse_other_keys(t, v.model);
   const ViscosityParts parts = parts_of(v.model);
-  if (parts.consistency) v.consistency = t.number("consistency", Bounds::positive(), "Pa sⁿ");
+  if (parts.consistency)
+    v.consistency = t.number("consistency", Bounds::positive(), parts.index ? "Pa sⁿ" : "Pa s");
   if (parts.index) v.index = t.number("index", {0.1, 2.0}, "");
   if (v.model == ViscosityModel::Carreau && v.index >= 1.0)
     t.fail("index",

@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <complex>
 #include <limits>
 #include <numbers>
 
 #include "lbm_solver/solver/driven_speed.h"
 #include "lbm_solver/solver/flow_control.h"
+#include "lbm_solver/solver/held_lag.h"
 #include "lbm_solver/solver/pressure_control.h"
 
 namespace lbm {
@@ -18,6 +19,10 @@ namespace {
 
 constexpr double kShareOfGrain = 0.1;  // seen: 0.84 of the force where a whole grain would make 8
 constexpr double kMuchRoundOff = 0.01;
+constexpr double kMargin = 1.5;       // of an advice against it, which is rounded
+constexpr double kRoom = 2.0;         // of a velocity scale over the mean speed
+constexpr double kThinChannel = 8.0;  // cells
+constexpr double kFollows = 0.05;     // of an amplitude, or of a period, which a flow may lack
 constexpr double kUnknown = std::numeric_limits<double>::infinity();  // a stress that may be any
 
 /// Smallest distance between walls that lie along an axis [m]; 0: there are none.
@@ -68,11 +73,12 @@ bool has_given_motion(const Scene& s) {
          (s.fluid.flow && s.fluid.flow->rate != 0.0) || s.initial.velocity.norm() > 0.0;
 }
 
-/// Of pressures on openings, or across periodic sides.
-double stress_of_pressure(const Scene& s) {
+/// Of pressures on openings, or across periodic sides. @param axis  along which they drive; left
+/// where there are none
+double stress_of_pressure(const Scene& s, int& axis) {
   const double pressure = largest_pressure(s);
   if (pressure == 0.0) return 0.0;
-  int axis = -1;
+  axis = -1;
   for (const BoundaryScene& b : s.boundaries) {
     if (axis >= 0 && axis_of(b.side) != axis) return kUnknown;  // around a corner
     axis = axis_of(b.side);
@@ -92,16 +98,21 @@ double stress_of_weight(const Scene& s) {
          capacity(s.box.dimension);
 }
 
+/// Of the body force on a volume of fluid, at its largest [N/m³]. @param axis  its own
+double largest_force(const Scene& s, int& axis) {
+  return s.fluid.body_force.cwiseAbs().maxCoeff(&axis) > 0.0
+             ? s.fluid.density * s.fluid.body_force.norm() * s.fluid.body_force_table.largest()
+             : 0.0;
+}
+
 /// A yield stress that nothing overcomes.
 void check_held(const Scene& s, Plan& plan) {
   const double yield = s.fluid.law.yield_stress;
   if (yield == 0.0 || has_given_motion(s)) return;
   int axis = 0;
-  const double force =
-      s.fluid.body_force.cwiseAbs().maxCoeff(&axis) > 0.0
-          ? s.fluid.density * s.fluid.body_force.norm() * s.fluid.body_force_table.largest()
-          : 0.0;
-  double stress = stress_of(s, force, axis) + stress_of_pressure(s);
+  const double force = largest_force(s, axis);
+  double stress = stress_of(s, force, axis);
+  stress += stress_of_pressure(s, axis);
   const bool grains = s.particles && s.coupling;
   if (grains) stress += stress_of_weight(s);
   if (stress == 0.0 || stress >= yield) return;
@@ -112,32 +123,48 @@ void check_held(const Scene& s, Plan& plan) {
       yield, stress, grains ? ", single particles by their weight included" : ""));
 }
 
-/// Part of an oscillation's amplitude that comes through an opening whose flow is held, by its
-/// period over the control's time T (docs/boundaries.md).
-struct Follows {
-  double period, part;
-};
-constexpr Follows kFollows[] = {{0.5, 0.12}, {1.4, 0.48}, {5.0, 0.78}, {14.0, 0.95}};
-
-void check_lag(const BoundaryScene& b, Plan& plan) {
+void check_lag(const Scene& s, const BoundaryScene& b, Plan& plan) {
   const bool repeats = b.table.repeats && !b.table.times.empty();
-  const double period = b.frequency > 0.0 ? 1.0 / b.frequency
-                        : repeats         ? b.table.times.back() - b.table.times.front()
-                                          : kUnknown;
-  const double time = PressureControl::time(plan.domain.cells()[axis_of(b.side)]) * plan.units.dt;
-  const Follows* const last = std::prev(std::end(kFollows));
-  const double over = period / time;
-  if (over > 1.4 * last->period) return;
-  const auto at = std::ranges::lower_bound(kFollows, over, {}, &Follows::period);
-  double part = at == std::begin(kFollows) ? at->part : last->part;
-  if (at != std::begin(kFollows) && at != std::end(kFollows))
-    part = std::lerp((at - 1)->part, at->part,
-                     std::log(over / (at - 1)->period) / std::log(at->period / (at - 1)->period));
+  if (b.frequency == 0.0 && !repeats) return;
+  const double period =
+      b.frequency > 0.0 ? 1.0 / b.frequency : b.table.times.back() - b.table.times.front();
+  const int axis = axis_of(b.side), cells = plan.domain.cells()[axis];
+  const std::complex<double> part = held_part(
+      {cells, gap_along(s, axis) / plan.units.dx, (plan.kernel.parameters.tau - 0.5) / 3.0,
+       std::ranges::count(s.boundaries, BoundaryScene::Kind::Outflow, &BoundaryScene::kind) > 0},
+      period / plan.units.dt);
+  const double amplitude = std::abs(part), late = -std::arg(part) / (2.0 * std::numbers::pi);
+  if (std::abs(amplitude - 1.0) < kFollows && std::abs(late) < kFollows) return;
+  const bool solids = !s.obstacles.empty() || s.coupling;
   plan.warnings.push_back(fmt::format(
       "boundary.flow_rate follows what is slow beside {:.3g} s, eight crossings of the box by "
-      "sound: of a flow with a period of {:.3g} s {} {:.0f} % comes; take a longer period, or a "
-      "boundary of kind \"velocity\", whose flow follows at once",
-      time, period, at == std::begin(kFollows) ? "less than" : "some", 100.0 * part));
+      "sound: of a flow with a period of {:.3g} s some {:.0f} % comes, {:.2g} of a period {}{}; "
+      "take a longer period, or a boundary of kind \"velocity\", whose flow follows at once",
+      PressureControl::time(cells) * plan.units.dt, period, 100.0 * amplitude, std::abs(late),
+      late < 0.0 ? "early" : "late",
+      solids ? " in an empty box, and much less through solids" : ""));
+}
+
+/// What can be done against round-off. Its part falls with the square of a longer step; with the
+/// cell to the power of d where the step grows with the cell, of d + 2 where τ binds it and it
+/// grows with the cell's area.
+std::string way_out_of_round_off(const Scene& s, const Plan& plan, double width, double part) {
+  const double longer = plan.units.dt * std::sqrt(kMargin * part / kMuchRoundOff);
+  const double by_tau = plan.units.dx * plan.units.dx / (3.0 * s.fluid.viscosity);  // τ = 1.5
+  if (longer <= by_tau && longer <= kWarnSpeed * plan.units.dx / s.fluid.velocity_scale)
+    return fmt::format("take numerics.time_step = {:.2g} s", longer);
+  const double scale = kWarnSpeed * plan.units.dx / longer;
+  if (longer <= by_tau && plan.step_bound == StepBound::Speed && scale > kRoom * mean_speed(s))
+    return fmt::format("take fluid.velocity_scale = {:.2g} m/s", scale);
+  const int power = s.box.dimension + (plan.step_bound == StepBound::Relaxation ? 2 : 0);
+  const double cell = plan.units.dx * std::pow(kMargin * part / kMuchRoundOff, 1.0 / power);
+  if (width > kThinChannel * cell)
+    return fmt::format("take cells of {:.2g} m or more{}", cell,
+                       plan.step_bound == StepBound::Given
+                           ? " and a numerics.time_step that is as much longer"
+                           : "");
+  return fmt::format("give fluid.body_force in its place, {:.3g} m/s² in a channel without solids",
+                     12.0 * s.fluid.viscosity * mean_speed(s) / (width * width));
 }
 
 /// A held flow so slow that the rounding of momenta shows in the force that is found. It is a part
@@ -157,9 +184,8 @@ void check_round_off(const Scene& s, Plan& plan) {
   if (part > kMuchRoundOff)
     plan.warnings.push_back(
         fmt::format("fluid.flow_rate is a mean of {:.2g} Δx/Δt: round-off makes some {:.2g} % of "
-                    "the force that is found for it; take a smaller fluid.velocity_scale or a "
-                    "longer numerics.time_step",
-                    speed, 100.0 * part));
+                    "the force that is found for it; {}",
+                    speed, 100.0 * part, way_out_of_round_off(s, plan, width, part)));
 }
 
 }  // namespace
@@ -168,7 +194,19 @@ void check_driven(const Scene& s, Plan& plan) {
   check_held(s, plan);
   check_round_off(s, plan);
   for (const BoundaryScene& b : s.boundaries)
-    if (b.flow_rate) check_lag(b, plan);
+    if (b.flow_rate) check_lag(s, b, plan);
+}
+
+double channel_wall_stress(const Scene& s) {
+  const bool solids = !s.obstacles.empty() || (s.particles && s.coupling);
+  int axis = 0;
+  const double force = largest_force(s, axis);
+  double stress = stress_of(s, force, axis);
+  stress += stress_of_pressure(s, axis);
+  if (solids || has_given_motion(s) || stress >= kUnknown) return 0.0;
+  int walls = 0;
+  for (int k = 0; k < s.box.dimension; ++k) walls += s.box.sides[k] == SideKind::Wall && k != axis;
+  return walls == 1 ? stress : 0.0;
 }
 
 }  // namespace lbm

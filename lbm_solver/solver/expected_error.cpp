@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/solver/expected_error.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "lbm_solver/immersed/resistance.h"
+#include "lbm_solver/solver/plan.h"
 
 namespace lbm {
 namespace {
@@ -124,7 +128,7 @@ ExpectedError of_central_moments(double tau, double diameter) {
 /// Whether the tables of arrays, which were made with TRT and each term's own Λ, hold.
 bool tabulated(const KernelChoice& k) {
   return k.collision == CollisionOperator::Trt && !k.local_viscosity() &&
-         k.parameters.magic == (by_resistance(k.solid_term) ? kResistanceMagic : 3.0 / 16.0);
+         k.parameters.magic == (by_resistance(k.solid_term) ? kResistanceMagic : kHalfWayMagic);
 }
 
 }  // namespace
@@ -144,6 +148,88 @@ std::optional<ExpectedError> expected_error(const KernelChoice& kernel, int dime
   return ExpectedError{
       std::lerp(at_diameter(low, diameter), at_diameter(high, diameter), part),
       fraction > rows.back().fraction * 1.001 || diameter < high.diameter.front() - 0.5};
+}
+
+namespace {
+
+constexpr double kLargeError = 5.0;  // per cent of drag, above which a scene is warned
+
+/// Part of the box that the discs or spheres cover of which the scene knows: obstacles, and the
+/// particles that it starts; 0 where there are none.
+double fraction_known(const Scene& s) {
+  double covered = 0.0, box = s.box.dimension == 2 ? s.box.depth : 1.0;
+  for (int k = 0; k < s.box.dimension; ++k) box *= s.box.size[k];
+  for (const ObstacleScene& o : s.obstacles)
+    if (o.round && !o.hollow) covered += particle_volume(s, o.diameter);
+  if (s.particles && s.coupling)
+    covered += static_cast<double>(s.particles->start.size()) *
+               particle_volume(s, s.particles->diameter.hi);
+  return covered / box;
+}
+
+std::string text_of(const ExpectedError& error) {
+  const double shown = std::abs(error.percent) < 0.05 ? 0.0 : error.percent;
+  return error.at_least ? fmt::format("more than {:.1f} %", std::abs(shown))
+                        : fmt::format("{:+.1f} %", shown);
+}
+
+/// Of what there is no table of errors: a law, or a Λ, where without it there would be one.
+std::string not_tabulated(const KernelChoice& k, int dimension) {
+  const std::string both = fmt::format("{} with {}", name_of(k.collision), name_of(k.solid_term));
+  if (k.parameters.viscosity_table) return both + " and a viscosity that depends on the shear rate";
+  if (k.local_viscosity()) return both + " and a turbulence model";
+  KernelChoice usual = k;
+  usual.parameters.magic = by_resistance(k.solid_term) ? kResistanceMagic : kHalfWayMagic;
+  return expected_error(usual, dimension, kLooseBed[dimension - 2], kSizes[1])
+             ? fmt::format("{} and Λ = {:.4g}", both, k.parameters.magic)
+             : both;
+}
+
+}  // namespace
+
+void expect_error(const Scene& s, Plan& plan) {
+  double smallest = s.particles ? s.particles->diameter.lo : 0.0;
+  for (const ObstacleScene& o : s.obstacles) {
+    if (o.round && o.hollow) return;
+    if (o.round && (smallest == 0.0 || o.diameter < smallest)) smallest = o.diameter;
+  }
+  if (smallest == 0.0 || (!s.coupling && plan.reynolds > 1.0)) return;
+  const int d = s.box.dimension;
+  const double ratio = s.particles ? std::ranges::min(s.particles->hydraulic_ratio) : 1.0;
+  const double cells = ratio * smallest / plan.units.dx;
+  std::vector<double> fractions{fraction_known(s)};
+  if (fractions[0] == 0.0) {  // the script brings the particles: a loose bed, and a dense one
+    fractions[0] = kLooseBed[d - 2];
+    if (plan.kernel.collision == CollisionOperator::Trt)
+      fractions.push_back(std::min(kDenseBed[d - 2], kPackedBed[d - 2] * std::pow(ratio, d)));
+  }
+  ExpectedError worst;
+  double where = 0.0;
+  for (const double fraction : fractions) {
+    const auto error = expected_error(plan.kernel, d, fraction, cells);
+    if (!error) {
+      plan.expected_error =
+          fmt::format("of the drag: not tabulated for {}: compare with a finer cell",
+                      not_tabulated(plan.kernel, d));
+      return;
+    }
+    plan.expected_error +=
+        fmt::format("{}{} at a solid fraction of {:.3g}",
+                    plan.expected_error.empty() ? "drag " : ", ", text_of(*error), fraction);
+    if (error->at_least || std::abs(error->percent) > std::abs(worst.percent))
+      worst = *error, where = fraction;
+  }
+  plan.expected_error +=
+      by_resistance(plan.kernel.solid_term)
+          ? " [slow flow through regular arrays]"
+          : fmt::format(
+                " [slow flow through regular arrays, τ = {:.3g}]",
+                plan.kernel.collision == CollisionOperator::Trt ? 1.0 : plan.kernel.parameters.tau);
+  if (worst.at_least || std::abs(worst.percent) > kLargeError)
+    plan.warnings.push_back(
+        fmt::format("with {:.3g} cells a diameter the drag is {} {:.0f} % off at a solid fraction "
+                    "of {:.3g}; take more cells if the bed is that dense",
+                    cells, worst.at_least ? "more than" : "some", std::abs(worst.percent), where));
 }
 
 }  // namespace lbm

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+
+#include "lbm_solver/base/scene.h"
 #include "lbm_solver/solver/kernel.h"
 
 namespace lbm {
@@ -21,6 +23,14 @@ struct ExpectedError {
 /// @param diameter  cells a diameter
 std::optional<ExpectedError> expected_error(const KernelChoice& kernel, int dimension,
                                             double fraction, double diameter);
+
+struct Plan;
+/// Puts into a plan what its drag will be off by, and a warning where that is much. Not of bodies
+/// in a flow that is not slow, or in a shell: that is no array.
+void expect_error(const Scene& scene, Plan& plan);
+
+/// Λ of TRT that puts a half-way wall half-way.
+inline constexpr double kHalfWayMagic = 3.0 / 16.0;
 
 /// Solid fractions of a loose and of a dense bed, where a scene does not give its own: the dense
 /// one has open pores. Grains touch at the third.

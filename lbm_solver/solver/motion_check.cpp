@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/solver/table_check.h"
 
 namespace lbm {
 namespace {
@@ -145,6 +146,9 @@ void check_motion(const Scene& s, const ObstacleScene& o, std::size_t number, Pl
         fmt::format("has a motion_table that ends at {:.4g} s, the run at {:.4g} s: it stands "
                     "from then on",
                     m.times.back(), s.end_time));
+  if (!m.times.empty())
+    if (const std::string odd = odd_times(m.times, false, s.end_time); !odd.empty())
+      warn("has a motion_table that " + odd);
   for (int k = 0; k < s.box.dimension && o.drum(); ++k) {
     const double wall = 0.5 * o.diameter + kDrumWall * plan.units.dx;
     if (s.box.sides[k] == SideKind::Wall &&

@@ -22,8 +22,8 @@ constexpr double kStepFractionOfContact = 0.1;  // solid step / √(m/k): the pa
 constexpr double kLimitReynoldsCell = 5.0;      // beyond: fixed-Λ TRT gives noisy forces
 constexpr double kDensityChange = 0.03;         // that a pressure difference may cause
 constexpr double kLeastMagic = 0.05, kLargestMagic = 0.375;  // where resistance is positive
-constexpr double kLargeError = 5.0;  // per cent of drag, above which a scene is warned
-constexpr double kFewCells = 4.0;    // a diameter below which nothing is claimed
+constexpr double kMostSteps = 1e12;
+constexpr double kFewCells = 4.0;  // a diameter below which nothing is claimed
 
 double cell_size(const Scene& s) {
   if (s.numerics.cell) return *s.numerics.cell;
@@ -53,30 +53,42 @@ Side to_side(SideKind kind) {
   return kind == SideKind::Wall ? Side::Wall : Side::Periodic;
 }
 
-/// Length of the Reynolds number: the smallest particle, the first disc at rest, or the box.
-double reference_length(const Scene& s) {
-  if (s.particles) return s.particles->diameter.lo;
-  for (const auto& o : s.obstacles)
-    if (o.round) return o.diameter;
-  return s.box.size.x();
+/// The Reynolds number of all messages and summaries, and its length.
+void count_reynolds(const Scene& s, Plan& plan) {
+  plan.reynolds_length = s.box.size.x();
+  plan.reynolds_of = "the box along x";
+  const auto round = std::ranges::find_if(s.obstacles, &ObstacleScene::round);
+  if (s.particles) {
+    plan.reynolds_length = s.particles->diameter.lo;
+    plan.reynolds_of = "the smallest particle";
+  } else if (round != s.obstacles.end()) {
+    plan.reynolds_length = round->diameter;
+    plan.reynolds_of = "the first round obstacle";
+  }
+  plan.reynolds = s.fluid.velocity_scale * plan.reynolds_length / s.fluid.viscosity;
 }
 
-/// C = dx/dt, and what set it.
-void choose_step(const Scene& s, Plan& plan) {
-  const double dx = plan.units.dx, nu = s.fluid.viscosity, u = s.fluid.velocity_scale;
+void take_step(const Scene& s, Plan& plan) {
   if (s.numerics.time_step) {
-    plan.lattice_speed = dx / *s.numerics.time_step;
+    plan.lattice_speed = plan.units.dx / *s.numerics.time_step;
     plan.step_limit = "given by the scene";
-  } else {
-    const std::pair<double, const char*> limits[] = {
-        {10.0 * u, "Mach: C = 10 × velocity_scale"},
-        {3.0 * nu / dx, "relaxation time: C = 3 ν/Δx keeps τ ≤ 1.5"},
-        {std::sqrt(3.0 * largest_pressure(s) / (s.fluid.density * kDensityChange)),
-         "compressibility: C = √(3 Δp/(ρ 0.03))"}};
-    const auto binding = *std::max_element(std::begin(limits), std::end(limits));
-    plan.lattice_speed = binding.first;
-    plan.step_limit = binding.second;
+    return;
   }
+  const StepChoice choice = choose_step(s, plan.units.dx, s.fluid.viscosity);
+  plan.lattice_speed = choice.lattice_speed;
+  plan.step_bound = choice.bound;
+  plan.step_limit = choice.words;
+}
+
+/// What makes the step longer, by what binds it.
+std::string way_to_fewer_steps(const Scene& s, StepBound bound) {
+  const std::string less = "take a coarser cell or an earlier end, or a ";
+  if (bound == StepBound::Given) return less + "longer numerics.time_step";
+  if (bound == StepBound::Speed) return less + "smaller fluid.velocity_scale";
+  if (bound == StepBound::Pressure) return less + "smaller difference of pressures";
+  if (s.fluid.law.yield_stress == 0.0) return less + "thinner fluid: is the viscosity in m²/s?";
+  return fmt::format("fluid.viscosity.yield_stress = {:.4g} Pa: {}", s.fluid.law.yield_stress,
+                     kLowerYield);
 }
 
 /// Rounds the step down so that the end time is a whole number of intervals. A run that goes on has
@@ -88,14 +100,23 @@ void fit_to_end(const Scene& s, std::optional<double> given, Plan& plan) {
   const double wished = given.value_or(plan.wished_step);
   const double whole = s.end_time / (wished * plan.fluid_steps);
   const double intervals = std::ceil(whole * (1.0 - 1e-12) - 1e-9);
-  if (intervals > 1e12)
-    throw InputError(s.file + ": run.end_time", fmt::format("needs {:.2g} steps", intervals),
-                     "take a coarser cell, a smaller velocity scale or an earlier end");
+  if (intervals > kMostSteps)
+    throw InputError(s.file + ": run.end_time",
+                     fmt::format("needs {:.2g} steps [{}]", intervals, plan.step_limit),
+                     way_to_fewer_steps(s, plan.step_bound));
   plan.intervals = std::max<std::int64_t>(1, static_cast<std::int64_t>(intervals));
   plan.units.dt = s.numerics.time_step || given
                       ? wished
                       : s.end_time / (static_cast<double>(plan.intervals) * plan.fluid_steps);
   plan.lattice_speed = plan.units.dx / plan.units.dt;
+}
+
+/// What makes τ - ½ larger, and may be done where something else than τ binds the step.
+const char* way_to_larger_tau(StepBound bound) {
+  if (bound == StepBound::Given) return "take a finer cell, or a longer numerics.time_step";
+  if (bound == StepBound::Pressure)
+    return "take a finer cell, or a smaller difference of pressures, which binds the step";
+  return "take a finer cell, or a lower fluid.velocity_scale if nothing is that fast";
 }
 
 /// @throws InputError  no fluid can be computed with this step
@@ -111,7 +132,7 @@ void check_step(const Scene& s, const Plan& plan) {
     throw InputError(
         s.file + ": numerics",
         fmt::format("τ - ½ = 3 ν Δt/Δx² = {:.2g} is too small for round-off", tau - 0.5),
-        "take a finer cell, a longer time step or a lower velocity_scale");
+        way_to_larger_tau(plan.step_bound));
   if (tau > 3.0)
     throw InputError(
         s.file + ": numerics.time_step",
@@ -208,7 +229,7 @@ void choose_solids(const Scene& s, Plan& plan) {
 
 /// Λ of TRT: 3/16 puts a half-way wall half-way; beside covered cells by resistance 1/10.
 double choose_magic(const Scene& s, const KernelChoice& k) {
-  if (!by_resistance(k.solid_term)) return s.numerics.magic.value_or(3.0 / 16.0);
+  if (!by_resistance(k.solid_term)) return s.numerics.magic.value_or(kHalfWayMagic);
   const double magic = s.numerics.magic.value_or(kResistanceMagic);
   if (magic < kLeastMagic || magic > kLargestMagic)
     throw InputError(
@@ -218,72 +239,6 @@ double choose_magic(const Scene& s, const KernelChoice& k) {
             s.file, magic, kLeastMagic, kLargestMagic),
         "leave it out (0.1), or take another numerics.solid_term");
   return magic;
-}
-
-/// Part of the box that the discs or spheres cover of which the scene knows: obstacles, and the
-/// particles that it starts; 0 where there are none.
-double fraction_known(const Scene& s) {
-  double covered = 0.0, box = s.box.dimension == 2 ? s.box.depth : 1.0;
-  for (int k = 0; k < s.box.dimension; ++k) box *= s.box.size[k];
-  for (const ObstacleScene& o : s.obstacles)
-    if (o.round && !o.hollow) covered += particle_volume(s, o.diameter);
-  if (s.particles && s.coupling)
-    covered += static_cast<double>(s.particles->start.size()) *
-               particle_volume(s, s.particles->diameter.hi);
-  return covered / box;
-}
-
-std::string text_of(const ExpectedError& error) {
-  const double shown = std::abs(error.percent) < 0.05 ? 0.0 : error.percent;
-  return error.at_least ? fmt::format("more than {:.1f} %", std::abs(shown))
-                        : fmt::format("{:+.1f} %", shown);
-}
-
-/// What the drag will be off by, and a warning above kLargeError. Not of bodies in a flow that is
-/// not slow, or in a shell: that is no array.
-void expect_error(const Scene& s, Plan& plan) {
-  double smallest = s.particles ? s.particles->diameter.lo : 0.0;
-  for (const ObstacleScene& o : s.obstacles) {
-    if (o.round && o.hollow) return;
-    if (o.round && (smallest == 0.0 || o.diameter < smallest)) smallest = o.diameter;
-  }
-  if (smallest == 0.0 || (!s.coupling && plan.reynolds > 1.0)) return;
-  const int d = s.box.dimension;
-  const double ratio = s.particles ? std::ranges::min(s.particles->hydraulic_ratio) : 1.0;
-  const double cells = ratio * smallest / plan.units.dx;
-  std::vector<double> fractions{fraction_known(s)};
-  if (fractions[0] == 0.0) {  // the script brings the particles: a loose bed, and a dense one
-    fractions[0] = kLooseBed[d - 2];
-    if (plan.kernel.collision == CollisionOperator::Trt)
-      fractions.push_back(std::min(kDenseBed[d - 2], kPackedBed[d - 2] * std::pow(ratio, d)));
-  }
-  ExpectedError worst;
-  double where = 0.0;
-  for (const double fraction : fractions) {
-    const auto error = expected_error(plan.kernel, d, fraction, cells);
-    if (!error) {
-      plan.expected_error =
-          fmt::format("not tabulated for {} with {}: compare with a finer cell",
-                      name_of(plan.kernel.collision), name_of(plan.kernel.solid_term));
-      return;
-    }
-    plan.expected_error +=
-        fmt::format("{}{} at a solid fraction of {:.3g}",
-                    plan.expected_error.empty() ? "drag " : ", ", text_of(*error), fraction);
-    if (error->at_least || std::abs(error->percent) > std::abs(worst.percent))
-      worst = *error, where = fraction;
-  }
-  plan.expected_error +=
-      by_resistance(plan.kernel.solid_term)
-          ? " [slow flow through regular arrays]"
-          : fmt::format(
-                " [slow flow through regular arrays, τ = {:.3g}]",
-                plan.kernel.collision == CollisionOperator::Trt ? 1.0 : plan.kernel.parameters.tau);
-  if (worst.at_least || std::abs(worst.percent) > kLargeError)
-    plan.warnings.push_back(
-        fmt::format("with {:.3g} cells a diameter the drag is {} {:.0f} % off at a solid fraction "
-                    "of {:.3g}; take more cells if the bed is that dense",
-                    cells, worst.at_least ? "more than" : "some", std::abs(worst.percent), where));
 }
 
 void choose_kernel(const Scene& s, Plan& plan) {
@@ -360,6 +315,15 @@ double particle_volume(const Scene& s, double diameter) {
                               : 4.0 / 3.0 * std::numbers::pi * r * r * r;
 }
 
+StepChoice choose_step(const Scene& s, double dx, double nu) {
+  const StepChoice limits[] = {
+      {10.0 * s.fluid.velocity_scale, StepBound::Speed, "Mach: C = 10 × velocity_scale"},
+      {3.0 * nu / dx, StepBound::Relaxation, "relaxation time: C = 3 ν/Δx keeps τ ≤ 1.5"},
+      {std::sqrt(3.0 * largest_pressure(s) / (s.fluid.density * kDensityChange)),
+       StepBound::Pressure, "compressibility: C = √(3 Δp/(ρ 0.03))"}};
+  return *std::ranges::max_element(limits, {}, &StepChoice::lattice_speed);
+}
+
 Plan make_plan(const Scene& s, std::optional<double> step) {
   Plan plan;
   check_places(s);
@@ -372,10 +336,10 @@ Plan make_plan(const Scene& s, std::optional<double> step) {
                  solid ? cells_along(s, s.box.size.z(), dx, "z") : 1,
                  solid ? to_side(s.box.sides[2]) : Side::Periodic};
   plan.units = {dx, 0.0, s.fluid.density, solid ? dx : s.box.depth, s.box.origin};
-  plan.reynolds = s.fluid.velocity_scale * reference_length(s) / s.fluid.viscosity;
+  count_reynolds(s, plan);
   if (s.particles) plan.cells_per_diameter = s.particles->diameter.lo / dx;
   if (s.coupling) plan.fluid_steps = s.coupling->fluid_steps;
-  choose_step(s, plan);
+  take_step(s, plan);
   fit_to_end(s, step, plan);
   choose_kernel(s, plan);
   plan_viscosity(s, plan);

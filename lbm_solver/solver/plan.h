@@ -12,6 +12,9 @@
 
 namespace lbm {
 
+/// What binds the fluid step: the scene gives it; Mach's number; τ ≤ 1.5; a pressure difference.
+enum class StepBound { Given, Speed, Relaxation, Pressure };
+
 /// A scene turned into numbers: grid, steps, and the dimensionless groups that judge them.
 struct Plan {
   Domain domain;
@@ -21,18 +24,21 @@ struct Plan {
   int fluid_steps = 1;         ///< a coupling interval
   int substeps = 1;            ///< solid steps a coupling interval
 
-  double wished_step = 0.0;    ///< dt before it was fitted to the end time [s]
-  double lattice_speed = 0.0;  ///< C = dx/dt [m/s]
-  double u_over_c = 0.0;       ///< velocity scale / C, the papers' Mach number
-  double reynolds = 0.0;       ///< with the smallest particle, a disc at rest, or the box's width
-  double reynolds_cell = 0.0;  ///< Re_h = u dx / nu
+  double wished_step = 0.0;      ///< dt before it was fitted to the end time [s]
+  double lattice_speed = 0.0;    ///< C = dx/dt [m/s]
+  double u_over_c = 0.0;         ///< velocity scale / C, the papers' Mach number
+  double reynolds = 0.0;         ///< u L/nu
+  double reynolds_length = 0.0;  ///< its L: smallest particle, first disc at rest, or the box [m]
+  std::string reynolds_of;       ///< what L is of
+  double reynolds_cell = 0.0;    ///< Re_h = u dx / nu
   double cells_per_diameter = 0.0;  ///< smallest particle; 0 without particles
   SolidScheme scheme = SolidScheme::ImmersedMovingBoundary;
   std::string solid_reason;      ///< what auto took for solids and why; empty where given
   std::string collision_reason;  ///< why auto took what it took; empty where it was given
-  std::string step_limit;        ///< what chose the fluid step
-  std::string substep_limit;     ///< what chose the substeps
-  std::string expected_error;    ///< of the drag on bodies; empty where there are none
+  StepBound step_bound = StepBound::Given;
+  std::string step_limit;      ///< the same in words
+  std::string substep_limit;   ///< what chose the substeps
+  std::string expected_error;  ///< of the drag on bodies; empty where there are none
   std::vector<std::string> warnings;
 
   double interval() const { return units.dt * fluid_steps; }  ///< [s]
@@ -44,6 +50,15 @@ inline constexpr double kStopSpeed = 0.2;
 
 /// Volume of a particle [m^3]; in two dimensions of a disc as thick as the layer.
 double particle_volume(const Scene& scene, double diameter);
+
+/// C = dx/dt that keeps Mach's number, τ and the change of density small [m/s], and which of them
+/// binds, also in words.
+struct StepChoice {
+  double lattice_speed;
+  StepBound bound;
+  const char* words;
+};
+StepChoice choose_step(const Scene& scene, double dx, double viscosity);
 
 /// Chooses what the scene leaves open and refuses what cannot work.
 /// Step rule: C = max(10 velocity_scale, √(3 Δp/(rho 0.03)), 3 nu/dx); the last keeps tau <= 1.5.

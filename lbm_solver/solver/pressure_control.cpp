@@ -3,13 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace lbm {
 namespace {
 
-constexpr double kSound = 1.0 / std::numbers::sqrt3;
-constexpr double kImpedance = 0.5 * kSound;  // the loop's factor, beside an opening of rho c_s
 constexpr double kCrossings = 8.0;
 constexpr double kFastest = 0.25;  // of Z: what one look may add to I for a velocity
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 
 #include "lbm_solver/base/record.h"
 #include "lbm_solver/boundary/in_time.h"
@@ -21,6 +22,8 @@ namespace lbm {
 class PressureControl {
  public:
   static constexpr std::int64_t kEvery = 4;
+  static constexpr double kSound = 1.0 / std::numbers::sqrt3;
+  static constexpr double kImpedance = 0.5 * kSound;  ///< Z
 
   /// @param patch    number of the pressure boundary
   /// @param flow     mass a step into the box @param in_time  its factor over time

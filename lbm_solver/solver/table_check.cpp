@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "lbm_solver/base/errors.h"
@@ -13,8 +14,17 @@ namespace lbm {
 namespace {
 
 constexpr double kLittle = 0.5;        // of a boundary that a profile covers
-constexpr double kMuch = 10.0;         // of a boundary's length that a profile has
+constexpr double kMuch = 10.0;         // of a boundary's length, or a run's time, that a table has
+constexpr double kMoment = 1e-3;       // of a run's time that a table has
 constexpr double kStepsATable = 20.0;  // that repeats
+
+/// ", are they in µm?" where a table is that much too large.
+std::string other_unit(double ratio, const char* unit) {
+  constexpr const char* prefixes[] = {"m", "µ", "n"};
+  const long thousands = std::lround(std::log10(ratio) / 3.0);
+  if (thousands < 1) return "";
+  return fmt::format(", are they in {}{}?", prefixes[std::min(thousands, 3L) - 1], unit);
+}
 
 /// A plateau at an end of a table says that the value shall stay, a 0 that nothing shall be there.
 void check_times(const Scene& s, const TimeTableScene& table, const std::string& key, Plan& plan) {
@@ -32,6 +42,13 @@ void check_times(const Scene& s, const TimeTableScene& table, const std::string&
         fmt::format("{} ends at {:.4g} s, the run at {:.4g} s: from then on it keeps its last "
                     "factor, {:.4g}; add a line at the run's end",
                     key, times.back(), s.end_time, factors.back()));
+}
+
+/// A table of which the run sees little, or that it leaves behind at once.
+void check_span(const Scene& s, const TimeTableScene& table, const std::string& key, Plan& plan) {
+  if (table.times.empty()) return;
+  if (const std::string odd = odd_times(table.times, table.repeats, s.end_time); !odd.empty())
+    plan.warnings.push_back(key + " " + odd);
 }
 
 /// A table whose times the step does not resolve.
@@ -61,8 +78,10 @@ void check_both(const TimeTableScene& table, double frequency, const std::string
 
 void check_table(const Scene& s, const TimeTableScene& table, double frequency,
                  const std::string& key, Plan& plan) {
-  check_times(s, table, key, plan);
+  const std::size_t before = plan.warnings.size();
   check_steps(s, table, key, plan);
+  if (plan.warnings.size() == before) check_span(s, table, key, plan);
+  if (plan.warnings.size() == before) check_times(s, table, key, plan);
   check_both(table, frequency, key, plan);
 }
 
@@ -83,8 +102,9 @@ void check_profile(const Scene& s, const BoundaryScene& b, std::size_t number, P
     if (places.back() - places.front() > kMuch * (side.hi - side.lo))
       plan.warnings.push_back(
           fmt::format("boundary.profile_table {}: of the table only {:.2g} % lies on it; its "
-                      "places are in metres, are they in mm?",
-                      what, 100.0 * shared / (places.back() - places.front())));
+                      "places are in metres{}",
+                      what, 100.0 * shared / (places.back() - places.front()),
+                      other_unit((places.back() - places.front()) / (side.hi - side.lo), "m")));
     if (shared < kLittle * (side.hi - side.lo))
       plan.warnings.push_back("boundary.profile_table " + what +
                               ": beyond its places the last factor stays");
@@ -92,6 +112,29 @@ void check_profile(const Scene& s, const BoundaryScene& b, std::size_t number, P
 }
 
 }  // namespace
+
+std::string odd_times(const std::vector<double>& times, bool repeats, double end) {
+  const double first = times.front(), last = times.back(), span = last - first;
+  const std::string both =
+      fmt::format("goes from {:.4g} to {:.4g} s, the run from 0 to {:.4g} s", first, last, end);
+  const std::string seconds = "its times are in seconds";
+  if (repeats)
+    return span <= end ? ""
+                       : fmt::format("{}: it ends after {:.2g} of the period; {}{}", both,
+                                     end / span, seconds, other_unit(span / end, "s"));
+  if (first >= end || last <= 0.0)
+    return fmt::format("{}: all of it lies {} the run, which keeps its {} line; {}{}", both,
+                       last <= 0.0 ? "before" : "behind", last <= 0.0 ? "last" : "first", seconds,
+                       last <= 0.0 ? "" : other_unit(last / end, "s"));
+  if (last > kMuch * end)
+    return fmt::format("{}: only {:.2g} % of it acts; {}{}", both,
+                       100.0 * (end - std::max(first, 0.0)) / span, seconds,
+                       other_unit(last / end, "s"));
+  if (last < kMoment * end)
+    return fmt::format("{}: it is over after {:.2g} % of the run; {}", both, 100.0 * last / end,
+                       seconds);
+  return "";
+}
 
 void check_tables(const Scene& s, Plan& plan) {
   for (std::size_t i = 0; i < s.boundaries.size(); ++i) {

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "lbm_solver/base/errors.h"
+#include "lbm_solver/solver/creep.h"
+#include "lbm_solver/solver/drive_check.h"
 #include "lbm_solver/viscosity/mean_law.h"
 #include "lbm_solver/viscosity/relaxation_table.h"
 #include "lbm_solver/viscosity/viscosity_law.h"
@@ -19,8 +22,11 @@ constexpr double kLargestTau = 400.0;  // above, a step changes the stress by to
 constexpr double kSlowTau = 60.0;      // above, stiff parts answer slowly
 constexpr double kLeastTau = 0.501;    // below, the noise of the stress decides
 constexpr double kMovedPlug = 5.0;     // τ u/c_s above which TRT thins what moves without yielding
-constexpr double kHugeBingham = 1e4;   // yield stress over viscous stress
-constexpr double kNoBingham = 1e6;     // the same, of which nothing can be computed
+constexpr double kUpdates = 1e8;       // of cells a second, by a core
+constexpr double kLeastStep = 2e-6;    // s that the smallest lattice takes
+constexpr double kLongRun = 600.0;     // s
+constexpr double kMuchLonger = 10.0;   // than without the yield stress
+constexpr double kMuchCreep = 0.1;     // of a channel's flow rate
 
 ViscosityLaw law_of(const Scene& s) {
   return {s.fluid, s.fluid.law.shear_rate.value_or(typical_shear_rate(s))};
@@ -96,10 +102,22 @@ void check_bounds(const Scene& s, const ViscosityLaw& law, Plan& plan) {
                                  s.file, upper, high, kLargestTau),
                      fmt::format("take at most {:.3g} m²/s, or a smaller numerics.time_step",
                                  (kLargestTau - 0.5) * a_tau));
-  if (low - 0.5 < 1e-6)
-    throw InputError(
-        fmt::format("{}: {} has τ - ½ = {:.2g}, too small for round-off", s.file, lower, low - 0.5),
-        fmt::format("take at least {:.3g} m²/s, or a finer cell", 1e-3 * a_tau));
+  // where τ binds, a finer cell has a step that is as much shorter
+  const bool finer_helps = plan.step_bound != StepBound::Relaxation;
+  if (low - 0.5 < 1e-6) {
+    const std::string text =
+        fmt::format("{}: {} has τ - ½ = {:.2g}, too small for round-off", s.file, lower, low - 0.5);
+    if (yields(s) && !s.fluid.law.nu_min)
+      throw InputError(
+          fmt::format("{}: yield_stress = {:.4g} Pa is {:.2g} times the viscous stress "
+                      "at the typical shear rate, {:.3g} 1/s",
+                      text, s.fluid.law.yield_stress,
+                      s.fluid.law.yield_stress / viscous_stress(s, law.shear_rate()),
+                      law.shear_rate()),
+          kLowerYield);
+    throw InputError(text, fmt::format("take at least {:.3g} m²/s{}", 1e-3 * a_tau,
+                                       finer_helps ? ", or a finer cell" : ""));
+  }
   if (high > kSlowTau)
     plan.warnings.push_back(fmt::format(
         "{} has τ = {:.3g}: parts that stiff answer a change of load only after some {:.2g} s; "
@@ -108,8 +126,8 @@ void check_bounds(const Scene& s, const ViscosityLaw& law, Plan& plan) {
   if (low < kLeastTau)
     plan.warnings.push_back(
         fmt::format("{} has τ = {:.5g}: where the fluid is that thin the flow "
-                    "is not resolved; take a finer cell, or a larger nu_min",
-                    lower, low));
+                    "is not resolved; take {}a larger nu_min",
+                    lower, low, finer_helps ? "a finer cell, or " : ""));
   const double rate = law.shear_rate(), typical = law(rate);
   const auto bound = [&](double nu, const std::string& text) {
     if (std::abs(typical / nu - 1.0) < 1e-3)
@@ -122,22 +140,64 @@ void check_bounds(const Scene& s, const ViscosityLaw& law, Plan& plan) {
   bound(law.nu_max(), upper);
 }
 
-/// A yield stress beside which the rest of the law is nothing, or is cut off.
+std::string duration_text(double seconds) {
+  constexpr std::pair<double, const char*> units[] = {
+      {3.15e7, "years"}, {86400.0, "days"}, {3600.0, "h"}, {60.0, "min"}};
+  for (const auto& [length, name] : units)
+    if (seconds >= length) return fmt::format("{:.2g} {}", seconds / length, name);
+  return fmt::format("{:.2g} s", seconds);
+}
+
+/// A yield stress that makes the run long, since the viscosity that it gives sets the step.
+void check_cost(const Scene& s, const ViscosityLaw& law, double plastic, Plan& plan) {
+  if (plan.step_bound != StepBound::Relaxation) return;
+  const double steps = static_cast<double>(plan.intervals) * plan.fluid_steps,
+               longer = plan.lattice_speed / choose_step(s, plan.units.dx, plastic).lattice_speed;
+  const Cell3 n = plan.domain.cells();
+  const double cells = static_cast<double>(n[0]) * n[1] * n[2],
+               seconds = steps * std::max(cells / kUpdates, kLeastStep);
+  if (longer < kMuchLonger || seconds < kLongRun) return;
+  plan.warnings.push_back(fmt::format(
+      "fluid.viscosity.yield_stress = {:.4g} Pa makes {:.3g} m²/s at the typical shear rate, "
+      "{:.3g} "
+      "1/s, which sets the step: the run takes {:.2g} steps, {:.2g} times as many as without it, "
+      "some {} on a core: {}",
+      s.fluid.law.yield_stress, law.reference(), law.shear_rate(), steps, longer,
+      duration_text(seconds), kLowerYield));
+}
+
+/// Shear rate at the walls of the channel that the scene is, else the typical one [1/s].
+double wall_rate(const Scene& s, const ViscosityLaw& law) {
+  const double viscous = channel_wall_stress(s) - s.fluid.law.yield_stress;
+  return viscous > 0.0 ? std::pow(viscous / s.fluid.law.consistency, 1.0 / s.fluid.law.index)
+                       : law.shear_rate();
+}
+
+/// What the bounds do to the flow rate of a plane channel: a part, and words.
+std::pair<double, std::string> creep_of(const Scene& s, const ViscosityLaw& law) {
+  const double rate = wall_rate(s, law), part = creep_in_channel(s.fluid, law, rate);
+  const std::string plug = yields(s) ? fmt::format(", where {:.2g} of its width do not yield",
+                                                   plug_in_channel(s.fluid, rate))
+                                     : "";
+  return {part,
+          fmt::format("nu_min and nu_max change the flow rate of a plane channel by {:+.2g} %, "
+                      "at {:.3g} 1/s at its walls{}; the grid's error comes on top",
+                      100.0 * part, rate, plug)};
+}
+
+void check_creep(const Scene& s, const ViscosityLaw& law, Plan& plan) {
+  if (!parts_of(s.fluid.law.model).consistency) return;
+  if (const auto [part, text] = creep_of(s, law); std::abs(part) > kMuchCreep)
+    plan.warnings.push_back("fluid.viscosity: " + text + "; take " +
+                            (part > 0.0 ? "a larger nu_max" : "a smaller nu_min"));
+}
+
+/// A yield stress that costs much, or beside which the rest of the law is cut off.
 void check_yield(const Scene& s, const ViscosityLaw& law, Plan& plan) {
   if (!yields(s)) return;
   const double rate = law.shear_rate(), viscous = viscous_stress(s, rate);
-  const double bingham = s.fluid.law.yield_stress / viscous;
-  const double steps = static_cast<double>(plan.intervals) * plan.fluid_steps;
-  const std::string large = fmt::format(
-      "fluid.viscosity.yield_stress = {:.4g} Pa is {:.2g} times the viscous stress at "
-      "the typical shear rate, {:.3g} 1/s; the viscosity there, {:.3g} m²/s, sets the "
-      "step, and the run takes {:.2g} of them",
-      s.fluid.law.yield_stress, bingham, rate, law.reference(), steps);
-  const char* const cure =
-      "is it in Pa? take a lower one, or the fluid.viscosity.shear_rate at which the fluid flows";
-  if (bingham > kNoBingham) throw InputError(s.file + ": " + large, cure);
-  if (bingham > kHugeBingham) plan.warnings.push_back(large + ": " + cure);
   const double plastic = viscous / rate / s.fluid.density;
+  check_cost(s, law, plastic, plan);
   if (law.nu_min() > 1.001 * plastic)
     plan.warnings.push_back(
         fmt::format("{} is above what the fluid has without its yield stress at the typical shear "
@@ -179,6 +239,7 @@ void plan_viscosity(const Scene& s, Plan& plan) {
   if (law.newtonian()) return;
   check_yield(s, law, plan);
   check_bounds(s, law, plan);
+  check_creep(s, law, plan);
   check_operator(s, law, plan);
   if (s.coupling && s.coupling->lubrication_range > 0.0)
     throw InputError(s.file + ": coupling.lubrication_range",
@@ -206,7 +267,8 @@ std::vector<std::string> describe_viscosity(const Scene& s, const Plan& plan) {
   std::vector<std::string> lines;
   std::string text = name_of(v.model);
   const ViscosityParts parts = parts_of(v.model);
-  if (parts.consistency) text += fmt::format(", K {:.4g} Pa sⁿ", v.consistency);
+  if (parts.consistency)
+    text += fmt::format(", K {:.4g} Pa s{}", v.consistency, parts.index ? "ⁿ" : "");
   if (parts.index) text += fmt::format(", n {:.4g}", v.index);
   if (yields(s))
     text += fmt::format(", σ_y {:.4g} Pa ({})", v.yield_stress,
@@ -223,16 +285,13 @@ std::vector<std::string> describe_viscosity(const Scene& s, const Plan& plan) {
       "ν {:.4g} … {:.4g} m²/s, τ {:.5g} … {:.4g}; the law acts from {:.3g} to {} 1/s", law.nu_min(),
       law.nu_max(), tau_of(plan, law.nu_min()), tau_of(plan, law.nu_max()), slow,
       fast > 0.0 ? fmt::format("{:.3g}", fast) : "any number of"));
-  const double length = s.fluid.velocity_scale / rate;
-  if (yields(s))
+  if (yields(s)) {
     lines.push_back(
-        fmt::format("Bingham number {:.3g}, yield stress over viscous stress at {:.3g} 1/s; Re "
-                    "{:.3g} over {:.3g} m",
-                    v.yield_stress / viscous_stress(s, rate), rate,
-                    s.fluid.velocity_scale * length / nu, length));
-  else
-    lines.push_back(fmt::format("Re {:.3g} with ν at {:.3g} 1/s over {:.3g} m",
-                                s.fluid.velocity_scale * length / nu, rate, length));
+        fmt::format("Bingham number {:.3g}, yield stress over viscous stress at {:.3g} "
+                    "1/s",
+                    v.yield_stress / viscous_stress(s, rate), rate));
+  }
+  if (parts.consistency) lines.push_back(creep_of(s, law).second);
   if (const std::string text = defaults_text(s, law); !text.empty())
     lines.push_back("by default " + text);
   return lines;

@@ -11,6 +11,8 @@
 namespace lbm {
 namespace {
 
+constexpr double kAtBound = 1e-3;  // a viscosity that differs by less is at its bound
+
 /// Second moments of a cell's non-equilibrium populations, as the kernel has them, over rho.
 using Moments2 = std::array<std::array<double, 3>, 3>;
 Moments2 stress_of(const Fluid& fluid, int x, int y, int z) {
@@ -72,6 +74,25 @@ double tau_of(const Fluid& fluid, const CollisionParameters& p, double open, int
   return 0.5 * (p.tau + std::sqrt(p.tau * p.tau + eddies * stress));
 }
 
+/// Viscosity of the law alone, without an eddy viscosity S_c² γ̇ on top.
+double law_viscosity(const RelaxationTable& table, double stress, double smagorinsky) {
+  return (1.0 / table(stress) - 0.5) / 3.0 - smagorinsky * smagorinsky * table.shear_rate(stress);
+}
+
+/// What the law is at rest, and where its table ends.
+struct Bounds {
+  double rest, shear;
+  static Bounds of(const RelaxationTable* table, double smagorinsky) {
+    if (!table) return {0.0, 0.0};
+    return {law_viscosity(*table, 0.0, smagorinsky),
+            law_viscosity(*table, table->highest(), smagorinsky)};
+  }
+};
+
+bool is_at(double viscosity, double bound) {
+  return std::abs(viscosity - bound) <= kAtBound * bound;
+}
+
 /// Part of a cell that is fluid.
 double open_part(const Fluid& fluid, int x, int y, int z) {
   const double solid = fluid.cover() ? fluid.cover()->solid_fraction(x, y, z) : 0.0;
@@ -93,6 +114,8 @@ ViscosityUse viscosity_use(const Fluid& fluid, const CollisionParameters& parame
   constexpr double sliver = 0.5;  // less of a cell says little of the largest shear rate
   const Cell3& n = fluid.cells().size;
   double sums[4] = {0.0, 0.0, 0.0, 0.0}, largest = 0.0;  // fluid, at either bound, viscosities
+  const Bounds whole = Bounds::of(parameters.viscosity_table.get(), parameters.smagorinsky),
+               covered = Bounds::of(parameters.covered_table.get(), parameters.smagorinsky);
   for (int z = 0; z < n[2]; ++z)
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x) {
@@ -100,8 +123,10 @@ ViscosityUse viscosity_use(const Fluid& fluid, const CollisionParameters& parame
         if (open == 0.0) continue;
         const auto [table, stress] = look_up(fluid, parameters, open, x, y, z);
         sums[0] += open;
-        if (stress <= table->lowest()) sums[1] += open;
-        if (stress >= table->highest()) sums[2] += open;
+        const Bounds& bound = table == parameters.viscosity_table.get() ? whole : covered;
+        const double nu = law_viscosity(*table, stress, parameters.smagorinsky);
+        if (is_at(nu, bound.rest)) sums[1] += open;
+        if (is_at(nu, bound.shear)) sums[2] += open;
         sums[3] += open * (1.0 / (*table)(stress)-0.5) / 3.0;
         if (open >= sliver) largest = std::max(largest, table->shear_rate(stress));
       }

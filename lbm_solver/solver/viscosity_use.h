@@ -11,8 +11,9 @@ namespace lbm {
 /// What the flow makes of a viscosity that depends on the shear rate, over all fluid of the box: a
 /// cell that solids cover in part counts with the part of it that is fluid.
 struct ViscosityUse {
-  double at_rest_bound = 0.0;   ///< share of the fluid slower than where the law begins
-  double at_shear_bound = 0.0;  ///< share of the fluid faster than where it ends
+  /// Shares of the fluid whose viscosity is the law's bound at rest, and that at high shear rates,
+  /// within a thousandth. An eddy viscosity on top does not count.
+  double at_rest_bound = 0.0, at_shear_bound = 0.0;
   double largest_shear = 0.0;   ///< a step; of cells of which at least half is fluid
   double mean_viscosity = 0.0;  ///< lattice units
 };

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "lbm_solver/immersed/resistance.h"
 #include "lbm_solver/solver/fluid.h"
+#include "lbm_solver/solver/held_lag.h"
 #include "lbm_solver/viscosity/relaxation_table.h"
 #include "lbm_solver/viscosity/viscosity_law.h"
 #include "tests/support/array_references.h"
@@ -173,6 +175,33 @@ TEST(PressureControl, ComesToTheFlowAgainstAnyResistance) {
     RecordProperty("drho" + std::to_string(radius > 0.0),
                    std::to_string(fluid.pressure_control()->drho()));
   }
+}
+
+/// Amplitude of the flow that comes of an oscillation, over that of the one that is to be held.
+double held_amplitude(double tau, int length, double period) {
+  constexpr double speed = 0.002;
+  Fluid fluid = open_channel(tau, speed, length, {.period_steps = period});
+  fluid.advance(static_cast<std::int64_t>(4.0 * period));
+  std::complex<double> sum = 0.0;
+  const auto looks = static_cast<int>(period / PressureControl::kEvery);
+  for (int look = 0; look < looks; ++look) {
+    fluid.advance(PressureControl::kEvery);
+    sum += fluid.pressure_control()->flow() *
+           std::polar(2.0 / looks, -2.0 * std::numbers::pi * look / looks);
+  }
+  return std::abs(sum) / (speed * kHeight);
+}
+
+// The balance of the first harmonic (held_lag.h), in a channel that resists a quarter as much as
+// the opening is stiff, and in one that hardly does and overshoots: off by up to 0.014.
+TEST(PressureControl, FollowsAnOscillationAsFarAsItSays) {
+  constexpr int length = 48;
+  const double time = PressureControl::time(length);
+  for (const double tau : {0.9, 0.53})
+    for (const double period : {1.4 * time, 5.0 * time}) {
+      const double part = std::abs(held_part({length, kHeight, (tau - 0.5) / 3.0}, period));
+      EXPECT_NEAR(held_amplitude(tau, length, period), part, 0.03) << tau << ' ' << period / time;
+    }
 }
 
 TEST(PressureControl, GoesOnToTheBit) {

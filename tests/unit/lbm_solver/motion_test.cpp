@@ -100,6 +100,8 @@ TEST_F(Motions, OfATableStayAtItsEnds) {
          "the 1. obstacle has a motion_table that begins at 0.2 s: it stands until then");
   warned(2, kBlock + "motion = \"table\"\nmotion_table = \"way.csv\"",
          "ends at 0.4 s, the run at 1 s: it stands from then on");
+  folder_.write("way.csv", "time,x,y\n0,0,0\n1e9,0.001,0\n");
+  warned(2, kBlock + "motion = \"table\"\nmotion_table = \"way.csv\"", "are they in ns?");
 }
 
 TEST_F(Motions, ThatAreWrongAreNamed) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/handshake.h"
 #include "lbm_solver/coupling/report.h"
 #include "lbm_solver/io/scene_reader.h"
@@ -41,6 +42,30 @@ TEST(Plan, ChoosesTheStepByRelaxationTimeWhereTheFluidIsViscous) {
   EXPECT_NE(p.step_limit.find("relaxation"), std::string::npos);
   EXPECT_LE(p.kernel.parameters.tau, 1.5 + 1e-12);
   EXPECT_GT(p.kernel.parameters.tau, 1.49);
+}
+
+// A remedy that the binding limit would undo is none.
+TEST(Plan, AdvisesByWhatBindsTheStep) {
+  const auto refused = [](const Scene& s, const std::string& words) {
+    try {
+      make_plan(s);
+      ADD_FAILURE() << "accepted where expected: " << words;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  Scene s = settling_disc();
+  s.fluid.viscosity = 1e-13;
+  refused(s, "a lower fluid.velocity_scale if nothing is that fast");
+  s.numerics.time_step = 1e-4;
+  refused(s, "a longer numerics.time_step");
+  s = settling_disc();
+  s.end_time = 1e10;
+  refused(s, "or a smaller fluid.velocity_scale");
+  s.fluid.viscosity = 1e-3;  // τ binds
+  refused(s, "is the viscosity in m²/s?");
+  s.numerics.time_step = 1e-4;
+  refused(s, "or a longer numerics.time_step");
 }
 
 TEST(Plan, WarnsWhereForcesGetNoisyAndWhereCellsAreFew) {
@@ -86,7 +111,7 @@ TEST(Plan, TellsTheErrorToExpectOfTheDrag) {
   says("with 2.5 cells a diameter the drag is more than");
   s.particles->hydraulic_ratio = {1.0};
   s.numerics.magic = 0.15;
-  says("not tabulated for trt with layered_resistance");
+  says("not tabulated for trt with layered_resistance and Λ = 0.15");
   s.numerics.magic.reset();
   s.numerics.collision = CollisionOperator::Bgk;
   s.numerics.solid_term = SolidTerm::Holdych;
@@ -94,6 +119,30 @@ TEST(Plan, TellsTheErrorToExpectOfTheDrag) {
   s.numerics.collision = CollisionOperator::CentralMoment;
   s.numerics.solid_term.reset();  // the table over τ, here 0.6
   says("drag -9.7 % at a solid fraction of 0.2 [");
+}
+
+// One Reynolds number, with its length, and the law with its own units.
+TEST(Plan, NamesItsReynoldsNumberOnce) {
+  Scene s = settling_disc();
+  const auto lines_with_re = [&s] {
+    const std::string text = describe(s, make_plan(s));
+    std::string found;
+    for (auto at = text.find("Re "); at != std::string::npos; at = text.find("Re ", at + 1))
+      found += text.substr(at, 60) + "\n";
+    return std::pair(found, text);
+  };
+  EXPECT_EQ(lines_with_re().first.find("Re = u L/ν 15 with L = 0.0025 m of the smallest particle"),
+            0u)
+      << lines_with_re().second;
+  s.fluid.law = {
+      .model = ViscosityScene::Model::Bingham, .consistency = 0.01, .yield_stress = 0.01};
+  const auto [found, text] = lines_with_re();
+  EXPECT_EQ(std::ranges::count(found, '\n'), 1) << found;
+  EXPECT_NE(text.find("bingham, K 0.01 Pa s, σ_y"), std::string::npos) << text;
+  EXPECT_NE(text.find("and a viscosity that depends on the shear rate: compare"),
+            std::string::npos);
+  s.fluid.law.model = ViscosityScene::Model::HerschelBulkley;
+  EXPECT_NE(lines_with_re().second.find("K 0.01 Pa sⁿ, n 1"), std::string::npos);
 }
 
 TEST(Plan, SaysWhereATableOfErrorsEnds) {

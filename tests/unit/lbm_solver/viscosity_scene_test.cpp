@@ -9,6 +9,7 @@
 
 #include "lbm_solver/base/errors.h"
 #include "lbm_solver/io/scene_reader.h"
+#include "lbm_solver/solver/creep.h"
 #include "lbm_solver/solver/viscosity_plan.h"
 #include "lbm_solver/viscosity/relaxation_table.h"
 #include "lbm_solver/viscosity/viscosity_law.h"
@@ -86,6 +87,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"yield_stress_of_rock",
                 "viscosity = {model = \"bingham\", consistency = 0.1, yield_stress = 1e6}",
                 {"yield_stress = 1e+06 Pa", "times the viscous stress", "is it in Pa?"}},
+        Refused{"yield_stress_that_takes_for_ever",
+                "viscosity = {model = \"bingham\", consistency = 1e4, yield_stress = 1e11}",
+                {"run.end_time", "needs", "yield_stress = 1e+11 Pa", "is it in Pa?"}},
         Refused{"too_stiff", kGel + ", nu_max = 10.0}", {"nu_max", "τ", "take at most"}},
         Refused{"smagorinsky_without_its_constant",
                 "kinematic_viscosity = 1e-6\nviscosity = {model = \"smagorinsky\"}",
@@ -171,13 +175,46 @@ TEST(ViscosityOfAScene, ABinghamFluidComesDownToItsPlasticViscosity) {
   EXPECT_FALSE(warns(make_plan(scene_with(folder, paste + "1}")), "thicker than its law"));
 }
 
-TEST(ViscosityOfAScene, WarnsOfAHugeBinghamNumber) {
+// By what it costs: 2e4 steps are nothing, whatever the Bingham number; 4e7 of 800 cells take 5
+// min, ten times as many are warned of.
+TEST(ViscosityOfAScene, WarnsOfAYieldStressThatCosts) {
   const test::TemporaryFolder folder;
-  const std::string mud =
-      "viscosity = {model = \"bingham\", consistency = 0.001, nu_max = 0.05, yield_stress = ";
-  EXPECT_TRUE(
-      warns(make_plan(scene_with(folder, mud + "80}")), "sets the step, and the run takes"));
-  EXPECT_FALSE(warns(make_plan(scene_with(folder, mud + "8}")), "sets the step"));
+  const auto mud = [&](const std::string& yield, const std::string& rest = "}") {
+    return make_plan(scene_with(
+        folder,
+        "viscosity = {model = \"bingham\", consistency = 1.0, yield_stress = " + yield + rest));
+  };
+  EXPECT_FALSE(warns(mud("1e5"), "on a core"));
+  EXPECT_TRUE(warns(mud("1e6"), "times as many as without it, some ")) << "its steps";
+  EXPECT_FALSE(warns(mud("1e6", ", shear_rate = 4e4}"), "on a core")) << "where it flows";
+}
+
+// By an independent sum over the stress: below the crossing the fluid is sheared with σ/nu_max.
+TEST(ViscosityOfAScene, KnowsWhatCreepAddsToAChannel) {
+  for (const double n : {1.0, 0.5}) {
+    constexpr double wall_rate = 3.0, yield = 0.5, density = 1000.0;  // stress at the walls: 1 Pa
+    FluidScene mud{.density = density};
+    mud.law = {.model = ViscosityScene::Model::HerschelBulkley,
+               .consistency = 0.5 / std::pow(wall_rate, n),
+               .index = n,
+               .yield_stress = yield,
+               .nu_min = 1e-9,
+               .nu_max = 100.0 / (wall_rate * density)};
+    double exact = 0.0, bounded = 0.0;
+    constexpr int parts = 200000;
+    for (int i = 0; i < parts; ++i) {
+      const double stress = (i + 0.5) / parts;
+      const double rate =
+          wall_rate * std::pow(std::max(0.0, (stress - yield) / (1.0 - yield)), 1.0 / n);
+      exact += stress * rate;
+      bounded += stress * std::max(rate, stress * wall_rate / 100.0);
+    }
+    EXPECT_NEAR(creep_in_channel(mud, ViscosityLaw(mud, wall_rate), wall_rate),
+                bounded / exact - 1.0, 1e-5)
+        << n;
+    EXPECT_NEAR(bounded / exact - 1.0, n == 1.0 ? 0.0020 : 0.0033, 1e-4);
+    EXPECT_NEAR(plug_in_channel(mud, wall_rate), 0.5, 1e-12);
+  }
 }
 
 // ν goes with the square root of the shear rate, so bounds a hundredth and a hundred times the
@@ -303,6 +340,13 @@ TEST(ViscosityOfAScene, WarnsOfALawThatDoesNotAct) {
   const test::TemporaryFolder folder;
   const Plan plan = make_plan(scene_with(folder, kGel + ", nu_min = 1e-5, nu_max = 1e-4}"));
   EXPECT_TRUE(warns(plan, "the law does not act"));
+  // at the walls of this channel, 400 1/s, the law has 2.5e-5 m²/s
+  EXPECT_FALSE(warns(plan, "flow rate of a plane channel"));
+  const auto bounds = [&](const std::string& both) {
+    return make_plan(scene_with(folder, kGel + ", " + both + "}"));
+  };
+  EXPECT_TRUE(warns(bounds("nu_min = 1e-5, nu_max = 3e-5"), "take a larger nu_max"));
+  EXPECT_TRUE(warns(bounds("nu_min = 1e-4, nu_max = 1e-2"), "take a smaller nu_min"));
 }
 
 TEST(ViscosityOfAScene, WarnsOfOperatorsThatDoNotFitAYieldStress) {
