@@ -20,7 +20,7 @@ using Polygon = std::vector<Vec3>;
 
 constexpr double kFlat = 1e-10;      // of the cosine between two triangles of one plane
 constexpr double kSharp = 0.009;     // rad: LIGGGHTS warns below 0.5 degrees, and stops at 0.0045
-constexpr double kLongest = 20.0;    // length over width of a piece
+constexpr double kLongest = 60.0;    // length over width of a piece
 constexpr double kMostPieces = 1e3;  // of a quadrangle
 constexpr double kOnSide = 1e-9;     // of the box's size: a corner lies on its side
 constexpr double kShort = 1e-6;      // of the box's size: an edge that is no edge
@@ -322,6 +322,27 @@ TriangleMesh clipped(const TriangleMesh& mesh, const Vec3& low, const Vec3& high
     if (!room.misses(p)) part.add(holds_all(p) ? p : room.cut(p));
   take_needles_out(part.mesh(), room);
   return part.mesh().triangles.empty() ? mesh : packed(part.mesh());
+}
+
+TriangleMesh of_fewer_sides(const TriangleMesh& cylinder) {
+  constexpr std::uint32_t every = 4;  // corner stays
+  const auto before = static_cast<std::uint32_t>((cylinder.vertices.size() - 2) / 2);
+  const std::uint32_t sides = before / every;
+  const auto area = [](std::uint32_t corners) {  // of a polygon in a circle
+    return corners * std::sin(2.0 * std::numbers::pi / corners);
+  };
+  const double wider = std::sqrt(area(before) / area(sides));
+  TriangleMesh mesh{{cylinder.vertices[0], cylinder.vertices[1]}, {}};
+  for (std::uint32_t ring = 0; ring < 2; ++ring)
+    for (std::uint32_t k = 0; k < before; k += every) {
+      const Vec3 &centre = mesh.vertices[ring], &v = cylinder.vertices[2 + ring * before + k];
+      mesh.vertices.push_back(centre + wider * (v - centre));
+    }
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const std::uint32_t a = 2 + k, b = 2 + (k + 1) % sides, c = a + sides, d = b + sides;
+    mesh.triangles.insert(mesh.triangles.end(), {{0, b, a}, {1, c, d}, {a, b, d}, {a, d, c}});
+  }
+  return mesh;
 }
 
 double largest_reach(const TriangleMesh& mesh) {

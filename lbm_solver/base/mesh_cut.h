@@ -17,6 +17,11 @@ TriangleMesh clipped(const TriangleMesh& mesh, const Vec3& low, const Vec3& high
 /// Smallest angle of all triangles [rad].
 double sharpest_angle(const TriangleMesh& mesh);
 
+/// A cylinder of a quarter of the sides, and of the same volume: LIGGGHTS keeps a list of the
+/// triangles near each grain, 2000 by default, and those of a rod thinner than the grains are many.
+/// @param cylinder  cylinder_surface()
+TriangleMesh of_fewer_sides(const TriangleMesh& cylinder);
+
 /// Largest distance of a triangle's corner from the mean of its corners.
 double largest_reach(const TriangleMesh& mesh);
 

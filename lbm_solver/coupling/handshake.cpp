@@ -49,6 +49,11 @@ std::vector<std::string> discs_of(const Scene& s) {
   return discs;
 }
 
+/// As io/obstacle_reader calls it.
+bool is_cylinder(const MeshScene& mesh) {
+  return mesh.file == "of a cylinder";
+}
+
 /// The farther of a place and a side of the box, outwards along `sign`; the side where the place
 /// lies beyond it by round-off alone.
 double beyond(double place, double side, double sign, double size) {
@@ -62,8 +67,9 @@ double beyond(double place, double side, double sign, double size) {
 /// which no grain is, long triangles are parted, and a block of a thin layer is made of short
 /// pieces.
 TriangleMesh offered_mesh(const Scene& s, const ObstacleScene& o) {
-  const TriangleMesh& whole = *o.mesh->surface;
-  if (!s.coupling) return whole;
+  if (!s.coupling) return *o.mesh->surface;
+  const TriangleMesh whole =
+      is_cylinder(*o.mesh) ? of_fewer_sides(*o.mesh->surface) : *o.mesh->surface;
   auto [low, high] = bounds(whole);
   if (s.box.dimension == 3 && (!o.motion || o.motion->surface_only)) {
     low = s.box.origin;
