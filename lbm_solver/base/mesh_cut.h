@@ -5,11 +5,22 @@
 
 namespace lbm {
 
-/// The part of a surface that lies in a box: triangles that cross its sides are cut there, what
-/// lies beyond is left out, and the surface is open where it was cut. Two triangles that make a
-/// long quadrangle become pieces along it: LIGGGHTS refuses sharp ones. A surface that lies in the
-/// box stays as it is; so does one that has nothing in it.
+/// The part of a surface that lies in a box, of triangles that LIGGGHTS takes: it refuses those
+/// with an angle below 0.0045, and warns below 0.0087. Triangles that cross the box's sides are cut
+/// there, what lies beyond is left out, and the surface is open where it was cut; what lies beyond
+/// by round-off is put on the side. Pairs of triangles that make a long quadrangle become pieces
+/// along it. What is still sharp (slivers of a cut) goes: a short side becomes one vertex, a flat
+/// triangle is dropped. A surface that lies in the box and has no sharp triangle stays as it is; so
+/// does one that has nothing in the box.
 TriangleMesh clipped(const TriangleMesh& mesh, const Vec3& low, const Vec3& high);
+
+/// Smallest angle of all triangles [rad].
+double sharpest_angle(const TriangleMesh& mesh);
+
+/// A cylinder of a quarter of the sides, and of the same volume: LIGGGHTS keeps a list of the
+/// triangles near each grain, 2000 by default, and those of a rod thinner than the grains are many.
+/// @param cylinder  cylinder_surface()
+TriangleMesh of_fewer_sides(const TriangleMesh& cylinder);
 
 /// Largest distance of a triangle's corner from the mean of its corners.
 double largest_reach(const TriangleMesh& mesh);

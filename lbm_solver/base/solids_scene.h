@@ -26,6 +26,7 @@ struct MeshScene {
   bool hollow = false;                          ///< solid is what lies outside of it
   double thickness = 0.0;                       ///< of a layer that was made of the surface [m]
   double volume = 0.0;                          ///< that it encloses [m^3]
+  std::string other_scale;  ///< by which it would lie in the box, as a message says it
 };
 
 /// An image from a file, as solid fractions.

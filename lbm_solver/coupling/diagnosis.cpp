@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -103,6 +104,19 @@ std::string overlap_text(const std::vector<SolidOverlap>& in, double radius, std
   return text + ".";
 }
 
+/// Of one that began deep in a solid, if it is the one beside, or is no longer there.
+/// @param beside  null: there is none
+std::string thrown_text(const DeepStarts& starts, const protocol::Particle* beside,
+                        const std::vector<protocol::Particle>& particles) {
+  if (beside && starts.contains(beside->state.id))
+    return fmt::format(" It began {}, and was thrown out.", starts.at(beside->state.id));
+  for (const auto& [id, where] : starts)
+    if (std::ranges::none_of(particles, [&](const auto& p) { return p.state.id == id; }))
+      return fmt::format(" Particle {} began {}, was thrown out, and has left the box since.", id,
+                         where);
+  return {};
+}
+
 double solid_part(const Scene& s, const std::vector<protocol::Particle>& particles) {
   double volume = 0.0, box = 1.0;
   for (const auto& p : particles) volume += particle_volume(s, 2.0 * p.shape.radius);
@@ -133,7 +147,8 @@ std::optional<double> SpeedRecord::growth() const {
 }
 
 std::string diagnosis(const Scene& s, const Plan& plan, double time, const std::optional<Vec3>& at,
-                      const SpeedRecord& record, const std::vector<protocol::Particle>& particles) {
+                      const SpeedRecord& record, const std::vector<protocol::Particle>& particles,
+                      const DeepStarts& starts) {
   std::string text, cure;
   const Near near = nearest(s, at, particles);
   const std::optional<double> growth = record.growth();
@@ -163,6 +178,11 @@ std::string diagnosis(const Scene& s, const Plan& plan, double time, const std::
         "their contact throws them apart: start particles apart, or relax the packing before "
         "the coupling; where they were pressed together, take stiffer contacts "
         "(particles.contact_stiffness and the script's) or more coupling.substeps";
+  } else if (const std::string thrown =
+                 thrown_text(starts, beside ? near.particle : nullptr, particles);
+             !thrown.empty()) {
+    text += thrown;
+    cure = "start it outside, as the warning at the start says";
   } else if (!driven.empty() && driven.front().speed > kMuchFaster * s.fluid.velocity_scale) {
     text += fmt::format(" {} can give {:.3g} m/s.", driven.front().what, driven.front().speed);
     cure = fmt::format(

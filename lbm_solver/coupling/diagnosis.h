@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lbm_solver/coupling/start_check.h"
 #include "lbm_solver/solver/plan.h"
 #include "protocol/wire/session.h"
 
@@ -37,8 +38,10 @@ class SpeedRecord {
 /// @param time       [s], at which obstacles are where they are
 /// @param at         where the fluid is too fast [m]; absent: it is a particle, the fastest one
 /// @param particles  all of the box, or none
+/// @param starts     of those that began deep in a solid
 std::string diagnosis(const Scene& scene, const Plan& plan, double time,
                       const std::optional<Vec3>& at, const SpeedRecord& record,
-                      const std::vector<protocol::Particle>& particles);
+                      const std::vector<protocol::Particle>& particles,
+                      const DeepStarts& starts = {});
 
 }  // namespace lbm

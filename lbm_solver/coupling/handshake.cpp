@@ -49,19 +49,41 @@ std::vector<std::string> discs_of(const Scene& s) {
   return discs;
 }
 
+/// As io/obstacle_reader calls it.
+bool is_cylinder(const MeshScene& mesh) {
+  return mesh.file == "of a cylinder";
+}
+
+/// The farther of a place and a side of the box, outwards along `sign`; the side where the place
+/// lies beyond it by round-off alone.
+double beyond(double place, double side, double sign, double size) {
+  constexpr double kRoundOff = 1e-9;  // of the box
+  return sign * (place - side) > kRoundOff * size ? place : side;
+}
+
 /// The surface of a mesh as the solid's program gets it. LIGGGHTS stops where a triangle's middle
-/// lies beyond the box, and where a triangle reaches farther than once around a periodic side, as
-/// the layer of two dimensions is: what stands there is cut at the box, beyond which no grain is,
-/// and a block of a thin layer is made of short pieces.
+/// lies beyond the box, where one is long and thin, and where one reaches farther than once around
+/// a periodic side, as the layer of two dimensions is: what stands there is cut at the box, beyond
+/// which no grain is, long triangles are parted, and a block of a thin layer is made of short
+/// pieces.
 TriangleMesh offered_mesh(const Scene& s, const ObstacleScene& o) {
-  const TriangleMesh& whole = *o.mesh->surface;
-  if (!s.coupling) return whole;
-  if (s.box.dimension == 3)
-    return o.motion && !o.motion->surface_only
-               ? whole
-               : clipped(whole, s.box.origin, s.box.origin + s.box.size);
-  const double room = reach_in_layer(s);
-  return room > 0.0 && largest_reach(whole) > room ? short_walls(whole, room) : whole;
+  if (!s.coupling) return *o.mesh->surface;
+  const TriangleMesh whole =
+      is_cylinder(*o.mesh) ? of_fewer_sides(*o.mesh->surface) : *o.mesh->surface;
+  auto [low, high] = bounds(whole);
+  if (s.box.dimension == 3 && (!o.motion || o.motion->surface_only)) {
+    low = s.box.origin;
+    high = low + s.box.size;
+  } else if (const double room = reach_in_layer(s);
+             s.box.dimension == 2 && room > 0.0 && largest_reach(whole) > room) {
+    return short_walls(whole, room);
+  } else {  // the box, and the mesh where it lies beyond
+    for (int k = 0; k < s.box.dimension; ++k) {
+      low[k] = beyond(low[k], s.box.origin[k], -1.0, s.box.size[k]);
+      high[k] = beyond(high[k], s.box.origin[k] + s.box.size[k], 1.0, s.box.size[k]);
+    }
+  }
+  return clipped(whole, low, high);
 }
 
 /// The box around a mesh as it lies at a time.
@@ -80,7 +102,9 @@ void add_walls(const Scene& s, double time, protocol::Hello& h) {
   for (int side = 0; side < 2 * s.box.dimension; ++side)
     (*h.sides)[side] = wall_at(s, static_cast<SideName>(side));
   const auto meshes = meshes_of(s);
-  for (const ObstacleScene* o : meshes) h.bodies.push_back("obstacle: " + mesh_text(s, *o, time));
+  for (const ObstacleScene* o : meshes)
+    h.bodies.push_back("obstacle: " + mesh_text(s, *o, time) +
+                       (o->motion ? protocol::motion_text(true) : ""));
   std::size_t n = s.obstacles.size() - meshes.size();
   for (std::size_t i = 0; i < discs_of(s).size(); ++i, --n)
     h.bodies.push_back(fmt::format("disc{} (cylinder)", i + 1));

@@ -238,7 +238,8 @@ void Observers::guard(std::int64_t state, Fluid& fluid, const Particles* particl
     hide_hulls(all);
     const bool fluid_is_fastest = !(e.finite && particle > e.max_speed);
     return diagnosis(scene_, plan_, time_of(state),
-                     fluid_is_fastest ? std::optional(x) : std::nullopt, speeds_, all);
+                     fluid_is_fastest ? std::optional(x) : std::nullopt, speeds_, all,
+                     deep_starts_);
   };
   if (!e.finite)
     throw NumericsError(

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "lbm_solver/coupling/diagnosis.h"
 #include "lbm_solver/coupling/field_average.h"
@@ -15,6 +16,7 @@
 #include "lbm_solver/coupling/part_clock.h"
 #include "lbm_solver/coupling/particles.h"
 #include "lbm_solver/coupling/sensors.h"
+#include "lbm_solver/coupling/start_check.h"
 #include "lbm_solver/coupling/steady_watch.h"
 #include "lbm_solver/io/field_writer.h"
 #include "lbm_solver/io/log.h"
@@ -39,6 +41,9 @@ class Observers {
   /// The run stops at this state, which --until may have put before the scene's end: progress
   /// counts to it.
   void ends_at(std::int64_t state) { end_ = state; }
+
+  /// Particles that began deep in a solid, for a diagnosis.
+  void remember(DeepStarts starts) { deep_starts_ = std::move(starts); }
 
   /// What a checkpoint must keep of the observers, complete on rank 0; `load` wants it on every
   /// rank. To be asked for before `at_state`, which the run that goes on calls again. Collective.
@@ -116,6 +121,7 @@ class Observers {
   bool speed_known_ = false;                   // last_speed_ is of this run
   bool chosen_seen_ = false;                   // the chosen particles have been looked for
   SpeedRecord speeds_;
+  DeepStarts deep_starts_;
   bool warned_ = false;                                 // of a speed above kWarnSpeed
   std::optional<ViscosityUse> viscosity_;               // at the end, where it varies
   double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out

@@ -14,6 +14,8 @@
 namespace lbm {
 namespace {
 
+constexpr double kOnSurface = 1e-9;  // of the radius
+
 /// The place of a triangle that is nearest to the origin [Ericson2005].
 Vec3 nearest_place(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a;
@@ -85,14 +87,15 @@ std::vector<SolidOverlap> solid_overlaps(const Scene& s, const Vec3& centre, dou
                      o.mesh ? fmt::format(" (mesh {})",
                                           std::filesystem::path(o.mesh->file).filename().string())
                             : ""),
-           depth, o.motion && !o.motion->surface_only});
+           depth, o.motion && !o.motion->surface_only,
+           o.mesh && std::abs(depth - r) <= kOnSurface * r});
   }
   for (int k = 0; k < s.box.dimension; ++k) {
     if (s.box.sides[k] != SideKind::Wall) continue;
     const double low = centre[k] - s.box.origin[k], high = s.box.size[k] - low;
     for (const int up : {0, 1})
       if (const double depth = r - (up ? high : low); depth > 0.0)
-        found.push_back({fmt::format("the wall \"{}\"", sides[2 * k + up]), depth, false});
+        found.push_back({fmt::format("the wall \"{}\"", sides[2 * k + up]), depth});
   }
   std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.depth > b.depth; });
   return found;

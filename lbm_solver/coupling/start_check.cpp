@@ -2,10 +2,11 @@
 #include "lbm_solver/coupling/start_check.h"
 
 #include <cmath>
-#include <map>
 #include <set>
 
+#include "lbm_solver/base/errors.h"
 #include "lbm_solver/coupling/solid_overlap.h"
+#include "lbm_solver/solver/place_check.h"
 #include "protocol/wire/clumps.h"
 
 namespace lbm {
@@ -63,8 +64,8 @@ std::set<std::int64_t> hulls(const Fluid& fluid, const Particles& particles) {
 
 }  // namespace
 
-void warn_of_starts(const Scene& s, const Plan& plan, const Fluid& fluid,
-                    const Particles& particles, Log& log) {
+DeepStarts warn_of_starts(const Scene& s, const Plan& plan, const Fluid& fluid,
+                          const Particles& particles, Log& log) {
   std::vector<double> lines;  // number, place and radius of those that may
   for (const protocol::Particle& p : particles.states()) {
     const Vec3 x = place_of(s, p);
@@ -74,7 +75,8 @@ void warn_of_starts(const Scene& s, const Plan& plan, const Fluid& fluid,
   }
   lines = fluid.ranks().collect(lines);
   const std::set<std::int64_t> clumps = hulls(fluid, particles);
-  std::map<std::int64_t, std::string> found;
+  DeepStarts found;
+  std::string in_surface;  // of which and what
   for (std::size_t i = 0; i + 4 < lines.size(); i += 5) {
     const double r = lines[i + 4];
     const Vec3 x(lines[i + 1], lines[i + 2], lines[i + 3]);
@@ -83,7 +85,15 @@ void warn_of_starts(const Scene& s, const Plan& plan, const Fluid& fluid,
     if (in.empty() || in[0].depth < kDeepStart * r) continue;
     found.emplace(static_cast<std::int64_t>(lines[i]),
                   fmt::format("{:.3g} of its radius deep in {}", in[0].depth / r, in[0].what));
+    if (in[0].on_surface)
+      in_surface = fmt::format("particle {} begins at {}, its centre in the surface of {}",
+                               static_cast<std::int64_t>(lines[i]), place_text(s, x), in[0].what);
   }
+  if (fluid.ranks().max(in_surface.empty() ? 0.0 : 1.0) > 0.0)
+    throw InputError(
+        in_surface.empty() ? "a particle begins in a surface" : in_surface,
+        "a contact there has no direction, and the solid stops with \"Internal error\"",
+        "start it beside the obstacle");
   std::size_t said = 0;
   for (const auto& [id, where] : found)
     if (++said <= kNamed)
@@ -93,6 +103,7 @@ void warn_of_starts(const Scene& s, const Plan& plan, const Fluid& fluid,
               id, where);
   if (found.size() > kNamed)
     log.say(0, "warning", "… and {} more particles begin deep in a solid", found.size() - kNamed);
+  return found;
 }
 
 }  // namespace lbm

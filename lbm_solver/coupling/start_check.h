@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <string>
+
 #include "lbm_solver/coupling/particles.h"
 #include "lbm_solver/io/log.h"
 #include "lbm_solver/solver/fluid.h"
@@ -8,10 +12,15 @@
 
 namespace lbm {
 
+/// Particles that began deep in a solid: number, and how deep in what.
+using DeepStarts = std::map<std::int64_t, std::string>;
+
 /// Warns of particles that begin deep in an obstacle or a wall: where a script has placed them, no
 /// check of the scene can know. Before the first particles are placed in the fluid, so that its
-/// cells show obstacles alone. Collective.
-void warn_of_starts(const Scene& scene, const Plan& plan, const Fluid& fluid,
-                    const Particles& particles, Log& log);
+/// cells show obstacles alone. Collective. @return  known to rank 0
+/// @throws InputError  the centre of one lies in the surface of a mesh, from where a contact has no
+///                     direction
+DeepStarts warn_of_starts(const Scene& scene, const Plan& plan, const Fluid& fluid,
+                          const Particles& particles, Log& log);
 
 }  // namespace lbm

@@ -111,8 +111,13 @@ std::string after(const std::string& header, const std::string& key) {
 
 /// x, y, z of a shape (z, y, x) or (y, x).
 Cell3 size_of(const std::vector<std::uint64_t>& shape) {
-  if (shape.size() != 2 && shape.size() != 3)
-    refuse(fmt::format("is an array of {} dimensions", shape.size()), "give [y][x] or [z][y][x]");
+  if (shape.size() != 2 && shape.size() != 3) {
+    const bool colours = shape.size() == 4 && (shape[3] == 3 || shape[3] == 4);
+    refuse(fmt::format("is an array of {} dimensions, of shape ({}){}", shape.size(),
+                       fmt::join(shape, ", "), colours ? ": colours of each voxel, it seems" : ""),
+           colours ? "give [z][y][x]; of colours make grey levels: array.mean(axis=3)"
+                   : "give [y][x] or [z][y][x]");
+  }
   Cell3 size{0, 0, 1};
   for (std::size_t k = 0; k < shape.size(); ++k)
     size[shape.size() - 1 - k] = static_cast<int>(std::min<std::uint64_t>(shape[k], 1U << 30));

@@ -22,6 +22,16 @@ namespace {
 
 constexpr std::uintmax_t kLargestFile = 8'000'000'000;  // bytes
 constexpr double kOtherUnit = 100.0;  // sizes of the box: a mesh that is larger is of another unit
+constexpr double kSmall = 0.01;       // sizes of the box: one that a unit would make small does not
+constexpr double kSide = 1e-6;        // of the box: a mesh that ends on its side
+
+/// Units of length in which files come, in m.
+struct FileUnit {
+  double metres;
+  const char* name;
+};
+constexpr FileUnit kUnits[] = {{1e-3, "mm"}, {1.0, "m"},   {0.0254, "inches"},
+                               {1e-2, "cm"}, {1e-6, "µm"}, {0.3048, "feet"}};
 
 /// The path of a file that a key names, and its checksum among the settings.
 std::string file_of(TableReader& t, const std::string& key, const std::string& scene_file) {
@@ -82,17 +92,56 @@ void check_surface(const TableReader& t, const TriangleMesh& mesh, bool may_be_o
          *found.at_open, "close them, or give the surface a thickness [m]");
 }
 
-void check_size(const TableReader& t, const TriangleMesh& mesh, const BoxScene& box) {
+/// Whether a surface has a part in the box, and whether all of it, as far as the boxes around show.
+struct Reach {
+  bool meets = true, within = true;
+
+  Reach(const Vec3& low, const Vec3& high, const BoxScene& box) {
+    for (int k = 0; k < 3; ++k) {
+      const double from = box.origin[k], to = from + box.size[k], near = kSide * box.size[k];
+      meets = meets && high[k] > from && low[k] < to;
+      within = within && low[k] >= from - near && high[k] <= to + near;
+    }
+  }
+};
+
+std::string reach_text(const TriangleMesh& mesh) {
   const auto [low, high] = bounds(mesh);
-  const double size = (high - low).maxCoeff();
-  bool outside = false;
-  for (int k = 0; k < 3; ++k)
-    outside = outside || high[k] <= box.origin[k] || low[k] >= box.origin[k] + box.size[k];
-  const std::string where = fmt::format("reaches from {} to {}", place_text(low), place_text(high));
-  if (size > kOtherUnit * box.size.maxCoeff())
-    t.fail("mesh", fmt::format("{}, {:.3g} times the box", where, size / box.size.maxCoeff()),
-           "are its lengths in mm? then give scale = 0.001");
-  if (outside) t.fail("mesh", where + ", outside of the box", "give move = [x, y, z] in m");
+  return fmt::format("reaches from {} to {}", place_text(low), place_text(high));
+}
+
+/// The largest scale by which a mesh would lie in the box and not be small in it, of the units that
+/// files are in; as a message says it, and empty where there is none.
+/// @param scale  that the mesh has
+std::string scale_hint(const TriangleMesh& mesh, double scale, const Vec3& move,
+                       const BoxScene& box) {
+  const auto [low, high] = bounds(mesh);
+  double largest = 0.0;
+  std::string hint;
+  for (const auto& [metres, unit] : kUnits) {
+    const double times = metres / scale;
+    const Vec3 from = times * (low - move) + move, to = times * (high - move) + move;
+    if (metres == scale || metres <= largest || !Reach(from, to, box).within ||
+        (to - from).maxCoeff() < kSmall * box.size.maxCoeff())
+      continue;
+    largest = metres;
+    hint = fmt::format("is its file in {}? with scale = {:.6g} it would reach from {} to {}", unit,
+                       metres, place_text(from), place_text(to));
+  }
+  return hint;
+}
+
+/// Refuses a mesh that has no part in the box, or is of another unit.
+void check_size(const TableReader& t, const TriangleMesh& mesh, const std::string& hint,
+                const BoxScene& box) {
+  const auto [low, high] = bounds(mesh);
+  const double size = (high - low).maxCoeff(), most = box.size.maxCoeff();
+  if (size > kOtherUnit * most)
+    t.fail("mesh", fmt::format("{}, {:.3g} times the box", reach_text(mesh), size / most),
+           hint.empty() ? "are its lengths in mm? then give scale = 0.001" : hint);
+  if (!Reach(low, high, box).meets)
+    t.fail("mesh", reach_text(mesh) + ", outside of the box",
+           "give move = [x, y, z] in m" + (hint.empty() ? "" : "; or " + hint));
 }
 
 MeshScene read_mesh(TableReader& t, const std::string& scene_file, const BoxScene& box) {
@@ -110,7 +159,9 @@ MeshScene read_mesh(TableReader& t, const std::string& scene_file, const BoxScen
   mesh.file = file_of(t, "mesh", scene_file);
   TriangleMesh surface = read_file(t, "mesh", mesh.file, [&] { return read_stl(mesh.file); });
   place(surface, scale, turn, move);
-  check_size(t, surface, box);
+  const std::string hint = scale_hint(surface, scale, move, box);
+  check_size(t, surface, hint, box);
+  mesh.other_scale = hint;
   check_surface(t, surface, mesh.thickness > 0.0);
   if (mesh.thickness > 0.0 && mesh.hollow)
     t.fail("hollow", "stands beside thickness", "give one of them");
@@ -176,7 +227,12 @@ FractionRule fraction_rule(TableReader& t) {
     return {[at, above](float v) { return (v >= at) == above ? 1.0F : 0.0F; }, "threshold"};
   }
   if (levels.size() != 2 || levels[0] == levels[1])
-    t.fail("grey_levels", "is no pair of different levels", "give [of fluid, of solid]");
+    t.fail("grey_levels", "is no pair of different levels",
+           "give [of fluid, of solid]; where solid is dark, the first is the higher");
+  if (t.has("solid"))
+    t.fail("solid", "stands beside grey_levels, whose order says it",
+           "leave it out; give grey_levels = [of fluid, of solid], the higher first where solid is "
+           "dark");
   const double fluid = levels[0], slope = 1.0 / (levels[1] - levels[0]);
   return {[fluid, slope](float v) {
             return static_cast<float>(std::clamp((v - fluid) * slope, 0.0, 1.0));
@@ -267,7 +323,9 @@ MeshScene read_cylinder(TableReader& t, const BoxScene& box) {
   MeshScene mesh;
   mesh.file = "of a cylinder";
   mesh.hollow = t.flag_or("hollow", false);
-  check_size(t, surface, box);
+  if (const auto [low, high] = bounds(surface); !Reach(low, high, box).meets)
+    t.fail("from", fmt::format("and to: the cylinder {}, outside of the box", reach_text(surface)),
+           "correct from and to, the centres of its ends in m, or its diameter");
   mesh.volume = enclosed_volume(surface);
   mesh.surface = std::make_shared<const TriangleMesh>(std::move(surface));
   return mesh;

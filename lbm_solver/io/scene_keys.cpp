@@ -253,7 +253,9 @@ constexpr Meaning kMeanings[] = {
     {"obstacle.threshold", "Level from which on the image is solid.",
      "required without grey_levels"},
     {"obstacle.solid", "Whether levels above or below the threshold are solid."},
-    {"obstacle.grey_levels", "Levels of fluid and of solid; between them are solid fractions.",
+    {"obstacle.grey_levels",
+     "Levels of fluid and of solid, the higher first where solid is dark; between them are solid "
+     "fractions.",
      "none"},
     {"obstacle.cut_from", "Lower corner of the part of the image that counts.", "all"},
     {"obstacle.cut_to", "Upper corner of that part.", "all"},

@@ -15,7 +15,9 @@
 #include "lbm_solver/solver/coupled_check.h"
 #include "lbm_solver/solver/drive_check.h"
 #include "lbm_solver/solver/driven_speed.h"
+#include "lbm_solver/solver/few.h"
 #include "lbm_solver/solver/motion_check.h"
+#include "lbm_solver/solver/overlap_check.h"
 #include "lbm_solver/solver/place_check.h"
 #include "lbm_solver/solver/shape_check.h"
 #include "lbm_solver/solver/table_check.h"
@@ -30,28 +32,6 @@ constexpr double kLargeReynolds = 1e5;  // of a cell
 constexpr double kThinObstacle = 4.0;   // cells
 constexpr double kStepsAPeriod = 20.0;  // of an oscillation
 constexpr double kTightLayer = 3.0;     // cells
-constexpr std::size_t kSaid = 5;        // of many warnings of a kind
-
-/// Warnings of a kind: the first few are said, the others counted.
-class Few {
- public:
-  Few(Plan& plan, std::string others) : plan_(plan), others_(std::move(others)) {}
-  ~Few() {
-    if (count_ > kSaid)
-      plan_.warnings.push_back(fmt::format("… and {} more {}", count_ - kSaid, others_));
-  }
-  Few(const Few&) = delete;
-  Few& operator=(const Few&) = delete;
-  /// @param text  gives the warning; called where it is said
-  void add(const auto& text) {
-    if (++count_ <= kSaid) plan_.warnings.push_back(text());
-  }
-
- private:
-  Plan& plan_;
-  std::string others_;
-  std::size_t count_ = 0;
-};
 
 /// Largest speed that the scene itself gives [m/s], and to what.
 std::pair<double, std::string> given_speed(const Scene& s) {
@@ -240,26 +220,6 @@ void check_sizes(const Scene& s, Plan& plan) {
   check_widths(s, plan);
 }
 
-/// Obstacles that lie in each other.
-void check_overlaps(const Scene& s, Plan& plan) {
-  std::vector<std::size_t> solid;  // what can lie in another
-  for (std::size_t i = 0; i < s.obstacles.size(); ++i)
-    if (!s.obstacles[i].grain && !s.obstacles[i].hollow) solid.push_back(i);
-  Few overlaps(plan, "pairs of obstacles that lie in each other");
-  for (const std::size_t i : solid)
-    for (const std::size_t j : solid) {
-      if (j >= i) break;
-      const ObstacleScene &a = s.obstacles[j], &b = s.obstacles[i];
-      if (!b.round || depth_in(s, a, b.centre, 0.5 * b.diameter) <= kTouch) continue;
-      overlaps.add([&] {
-        return fmt::format(
-            "the {}. obstacle lies partly in the {}.: the load on cells that both cover is shared "
-            "between them",
-            i + 1, j + 1);
-      });
-    }
-}
-
 /// Sensors that find nothing to measure.
 void check_periodic_sensors(const Scene& s, Plan& plan) {
   for (const SensorScene& sensor : s.output.sensors)
@@ -314,8 +274,8 @@ void check_meaning(const Scene& s, Plan& plan) {
   check_frequencies(s, plan);
   check_motions(s, plan);
   check_idle_keys(s, plan);
-  check_overlaps(s, plan);
   check_shapes(s, plan);
+  check_overlaps(s, plan);
   check_starts_in_shapes(s, plan);
   check_tables(s, plan);
   check_periodic_sensors(s, plan);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,21 +17,32 @@ namespace lbm {
 namespace {
 
 constexpr double kCovered = 1.0 - 1e-6;  // of a cell that lets nothing through
+constexpr double kLarge = 4.0;           // sizes of the box, of a mesh
+constexpr double kSmall = 4.0;           // cells, of a mesh
 
-/// A mesh in a unit so small that no cell sees it.
-void check_mesh_size(const Scene& s, const Plan& plan) {
+/// A mesh in a unit so small that no cell sees it is refused; one that is large or small, and would
+/// lie well in the box by the unit of another file, is named.
+void check_mesh_size(const Scene& s, Plan& plan) {
   for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
     const ObstacleScene& o = s.obstacles[i];
     if (!o.mesh) continue;
     const auto [low, high] = bounds(*o.mesh->surface);
-    const double size = (high - low).maxCoeff();
-    if (size >= plan.units.dx * (1.0 - 1e-9)) continue;
+    const double size = (high - low).maxCoeff(), most = s.box.size.maxCoeff();
+    const std::string& other = o.mesh->other_scale;
+    if (size >= plan.units.dx * (1.0 - 1e-9)) {
+      if (!other.empty() && (size > kLarge * most || size < kSmall * plan.units.dx))
+        plan.warnings.push_back(
+            fmt::format("the mesh of the {}. obstacle is {:.3g} m large, the box {:.3g} m: {}",
+                        i + 1, size, most, other));
+      continue;
+    }
     const bool from_file = !o.mesh->file.starts_with("of a ");
     throw InputError(
         fmt::format("{}: the {}. obstacle's mesh", s.file, i + 1),
         fmt::format("is {:.3g} m large, {:.2g} of a cell: no cell sees it", size,
                     size / plan.units.dx),
-        from_file
+        !other.empty() ? other
+        : from_file
             ? "are its lengths in metres already? then leave scale out (0.001 is for a file in mm)"
             : "take finer cells, or a larger obstacle");
   }
@@ -39,6 +51,17 @@ void check_mesh_size(const Scene& s, const Plan& plan) {
 /// Whether the scene says where an image begins.
 bool is_placed(const Scene& s, std::size_t obstacle) {
   return s.settings.contains(fmt::format("obstacle.{}.at", obstacle + 1));
+}
+
+/// What to say of an array that is thin along x, as [y][x][colour] is; empty of others.
+std::string colours_text(const ImageScene& image) {
+  const Cell3& n = image.voxels->size;
+  const std::string kind = std::filesystem::path(image.file).extension().string();
+  const bool array = kind == ".npy" || kind == ".h5" || kind == ".hdf5";
+  if (!array || (n[0] != 3 && n[0] != 4) || std::min(n[1], n[2]) <= 2 * n[0]) return {};
+  return fmt::format(
+      "; its array has the shape ({}, {}, {}), is that [y][x][colour]? wanted is [z][y][x]", n[2],
+      n[1], n[0]);
 }
 
 /// An image that begins at the box's corner since nothing is said, and ends before the box does.
@@ -56,8 +79,8 @@ void check_gaps(const Scene& s, Plan& plan) {
     if (!gaps.empty())
       plan.warnings.push_back(
           fmt::format("the image of the {}. obstacle fills {} only, and fluid lies beside it: is "
-                      "voxel = {:.4g} m right? if it is, say with at = … where the image begins",
-                      i + 1, gaps, image->voxel));
+                      "voxel = {:.4g} m right? if it is, say with at = … where the image begins{}",
+                      i + 1, gaps, image->voxel, colours_text(*image)));
   }
 }
 
@@ -80,7 +103,8 @@ std::string drive_along(const Scene& s, int axis) {
 /// Cells of the box that obstacles at rest cover whole.
 class Covered {
  public:
-  Covered(const Scene& s, const Plan& plan) : domain_(plan.domain), n_(plan.domain.cells()) {
+  Covered(const Scene& s, const Plan& plan)
+      : domain_(plan.domain), lattice_(lattice(plan.kernel.lattice)), n_(plan.domain.cells()) {
     std::vector<float> fraction(static_cast<std::size_t>(n_[0]) * n_[1] * n_[2], 0.0F);
     const auto add = [&](const Geometry& shape) {
       fill(shape, domain_, Block::whole(domain_), {}, [&](const FractionSpan& span) {
@@ -99,8 +123,10 @@ class Covered {
     for (const float f : fraction) whole_.push_back(f >= kCovered);
   }
 
-  /// Whether fluid cells, as populations go from one to the next, join both ends of an axis.
-  bool leaves_a_way(int axis) const {
+  /// Whether fluid cells join both ends of an axis.
+  /// @param sides_only  from cell to cell across their sides; else as populations go, which pass
+  ///                    between two covered cells that touch along an edge or at a corner
+  bool leaves_a_way(int axis, bool sides_only) const {
     std::vector<bool> seen = whole_;
     std::vector<Cell3> next;
     const auto visit = [&](const Cell3& c) {
@@ -117,7 +143,7 @@ class Covered {
       const Cell3 cell = next.back();
       next.pop_back();
       if (cell[axis] == n_[axis] - 1) return true;
-      each_neighbour(cell, axis, visit);
+      each_neighbour(cell, axis, sides_only, visit);
     }
     return false;
   }
@@ -126,27 +152,25 @@ class Covered {
   std::size_t number(const Cell3& c) const {
     return (static_cast<std::size_t>(c[2]) * n_[1] + c[1]) * n_[0] + c[0];
   }
-  /// Those across edges too, in three dimensions not those across corners; through periodic sides,
-  /// but not those of `axis`.
+  /// Through periodic sides, but not those of `axis`.
   template <class F>
-  void each_neighbour(const Cell3& cell, int axis, F&& f) const {
-    const int dz = domain_.dimension() == 3 ? 1 : 0;
-    for (int z = -dz; z <= dz; ++z)
-      for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) {
-          if (std::abs(x) + std::abs(y) + std::abs(z) > 2) continue;
-          Cell3 to{cell[0] + x, cell[1] + y, cell[2] + z};
-          bool outside = false;
-          for (int k = 0; k < 3; ++k) {
-            if (to[k] >= 0 && to[k] < n_[k]) continue;
-            outside = outside || k == axis || domain_.sides()[k] != Side::Periodic;
-            to[k] = (to[k] + n_[k]) % n_[k];
-          }
-          if (!outside) f(to);
-        }
+  void each_neighbour(const Cell3& cell, int axis, bool sides_only, F&& f) const {
+    for (int q = 1; q < lattice_.Q; ++q) {
+      const int* c = lattice_.c[q];
+      if (sides_only && std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]) > 1) continue;
+      Cell3 to{cell[0] + c[0], cell[1] + c[1], cell[2] + c[2]};
+      bool outside = false;
+      for (int k = 0; k < 3; ++k) {
+        if (to[k] >= 0 && to[k] < n_[k]) continue;
+        outside = outside || k == axis || domain_.sides()[k] != Side::Periodic;
+        to[k] = (to[k] + n_[k]) % n_[k];
+      }
+      if (!outside) f(to);
+    }
   }
 
   Domain domain_;
+  const Lattice& lattice_;
   Cell3 n_;
   std::vector<bool> whole_;
 };
@@ -160,7 +184,14 @@ void check_way(const Scene& s, Plan& plan) {
     const std::string drive = drive_along(s, k);
     if (drive.empty()) continue;
     if (!covered) covered.emplace(s, plan);
-    if (!covered->leaves_a_way(k))
+    const bool open = covered->leaves_a_way(k, true);
+    if (!open && covered->leaves_a_way(k, false))
+      plan.warnings.push_back(fmt::format(
+          "along {}, where {} drives a flow, the only way leads between covered cells that touch "
+          "at an edge or a corner: what seeps through there hangs on the cells alone; of an image "
+          "look at threshold and solid, or take finer voxels",
+          "xyz"[k], drive));
+    else if (!open)
       plan.warnings.push_back(fmt::format(
           "obstacles close the box along {}, and {} drives a flow there: nothing gets through; of "
           "an image look at threshold and solid, or take finer voxels",

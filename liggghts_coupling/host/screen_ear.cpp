@@ -53,6 +53,14 @@ std::string advice_for(const std::string& error) {
     return "if the script has a mesh, it may have triangles longer than a periodic side of the "
            "box, in two dimensions "
            "than box.depth: take the scene's own, ${mesh1}, or a larger depth";
+  if (says("Bad mesh"))
+    return "a mesh must have no long and thin triangles: take the scene's own, ${mesh1}, whose "
+           "triangles are parted where they are long, or make it anew with triangles of sides "
+           "that are alike";
+  if (says("Internal error"))
+    return "if the script has a mesh, a grain's place is no number any more, as where its centre "
+           "lay in the surface of the mesh: start grains beside it, and look at what was pressed "
+           "into it";
   return {};
 }
 

@@ -79,8 +79,10 @@ void tell_granular_wall(LAMMPS_NS::FixWallGran& fix, MPI_Comm ranks, Hello& hell
   if (fix.is_mesh_wall()) {
     for (int m = 0; m < fix.n_meshes(); ++m) {
       auto* const mesh = fix.mesh_list()[m];
-      hello.bodies.push_back(fmt::format("fix {} {} (of fix {} {}), {}", mesh->id, mesh->style,
-                                         fix.id, fix.style, extent_text(*mesh->triMesh(), ranks)));
+      const bool moves = mesh->triMesh()->isMoving() || mesh->surfaceVel();
+      hello.bodies.push_back(fmt::format("fix {} {} (of fix {} {}), {}{}", mesh->id, mesh->style,
+                                         fix.id, fix.style, extent_text(*mesh->triMesh(), ranks),
+                                         protocol::motion_text(moves)));
     }
     return;
   }
@@ -89,7 +91,8 @@ void tell_granular_wall(LAMMPS_NS::FixWallGran& fix, MPI_Comm ranks, Hello& hell
   const std::string what =
       plane ? fmt::format("plane {} = {:.6g} m", "xyz"[plane->axis], plane -> place)
             : std::string("cylinder");
-  hello.bodies.push_back(fmt::format("fix {} {} ({})", fix.id, fix.style, what));
+  hello.bodies.push_back(fmt::format("fix {} {} ({}){}", fix.id, fix.style, what,
+                                     plane ? "" : protocol::motion_text(fix.is_moving() != 0)));
 }
 
 }  // namespace

@@ -36,6 +36,22 @@ std::optional<Extent> mesh_in(const std::string& body) {
   return read == 6 ? std::optional(x) : std::nullopt;
 }
 
+constexpr const char* kMoving = ", moving";
+constexpr const char* kAtRest = ", at rest";
+
+bool ends_with(const std::string& body, const std::string& words) {
+  return body.size() >= words.size() &&
+         body.compare(body.size() - words.size(), words.size(), words) == 0;
+}
+
+/// The name of a body of the solid without where it is and whether it moves.
+std::string name_in(const std::string& body) {
+  std::string name = body.substr(0, body.find(std::string(", ") + kMesh));
+  for (const char* words : {kMoving, kAtRest})
+    if (ends_with(name, words)) name.resize(name.size() - std::strlen(words));
+  return name;
+}
+
 /// One that moves is where it is but for a step's way, and for round-off.
 constexpr double kNear = 1e-4;  // of the box
 
@@ -68,7 +84,60 @@ std::vector<std::string> unshared(const std::vector<std::string>& mine,
   return rest;
 }
 
+/// A mesh that both have and one of them moves.
+void find_unlike_motion(const Hello& fluid, const Hello& solid, std::vector<std::string>& found) {
+  for (const std::string& body : solid.bodies) {
+    const auto mesh = mesh_in(body);
+    if (!mesh || (!ends_with(body, kMoving) && !ends_with(body, kAtRest))) continue;
+    int number = 0, unlike = 0;  // meshes of the fluid; that which is the same and moves otherwise
+    bool alike = false;
+    for (const std::string& other : fluid.bodies) {
+      const auto place = mesh_in(other);
+      number += place ? 1 : 0;
+      if (!place || !same(*mesh, *place, fluid)) continue;
+      if (ends_with(body, kMoving) == ends_with(other, kMoving))
+        alike = true;
+      else
+        unlike = number;
+    }
+    if (alike || unlike == 0) continue;
+    const std::string words = "${mesh" + std::to_string(unlike) + "_motion}";
+    if (ends_with(body, kAtRest))
+      found.push_back(
+          format("{} stands still, and the obstacle of the scene at its place moves: grains and "
+                 "fluid will meet two walls; let the script move it, with fix ID all move/mesh "
+                 "mesh MESH {}, or where surface_only is given with {} at the end of its fix "
+                 "mesh/surface",
+                 name_in(body), words, words));
+    else
+      found.push_back(
+          format("{} moves, and the obstacle of the scene at its place stands still: grains and "
+                 "fluid will meet two walls; give the obstacle a motion, or leave that of the "
+                 "script out",
+                 name_in(body)));
+  }
+}
+
+/// Discs that turn and cylinders that do not. Which of them are one is not known: they are counted.
+void find_still_cylinders(const Hello& fluid, const Hello& solid, std::vector<std::string>& found) {
+  const auto turning = std::count_if(fluid.bodies.begin(), fluid.bodies.end(), is_cylinder);
+  const auto moving = std::count_if(
+      solid.bodies.begin(), solid.bodies.end(),
+      [](const std::string& body) { return is_cylinder(body) && !ends_with(body, kAtRest); });
+  if (moving >= turning) return;
+  for (const std::string& body : solid.bodies)
+    if (is_cylinder(body) && ends_with(body, kAtRest))
+      found.push_back(format(
+          "{} stands still, and a disc of the scene turns: if they are one wall, take the words of "
+          "{}, whose shear turns it",
+          name_in(body), "${disc1_wall}"));
+}
+
 }  // namespace
+
+std::string motion_text(bool moves) {
+  return moves ? kMoving : kAtRest;
+}
 
 std::string mesh_text(const Vec3& low, const Vec3& high) {
   return format("{}{:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m", kMesh, low[0], low[1],
@@ -96,12 +165,14 @@ std::vector<std::string> one_sided_walls(const Hello& fluid, const Hello& solid)
     found.push_back(
         format("{} is a wall for the particles only: the fluid does not see it and flows "
                "through; if it shall not, add an obstacle to the scene",
-               body.substr(0, body.find(std::string(", ") + kMesh))));
+               name_in(body)));
   if (!of_fluid.empty() && solid.bodies.empty())
     found.push_back(
         format("{}: there for the fluid only, particles pass through; if they shall not, add "
                "walls to the solid",
                join(of_fluid, ", ")));
+  find_unlike_motion(fluid, solid, found);
+  find_still_cylinders(fluid, solid, found);
   return found;
 }
 

@@ -78,7 +78,7 @@ TEST_F(MeshWalls, ARodThatReachesBeyondTheBoxIsCutForTheSolid) {
     write(3, std::string(ends) + "\ndiameter = 0.003\n");
     const JobResult job = run();
     test::expect_end(job, 0, {});
-    for (const char* words : {"left the domain", "Bad mesh"})
+    for (const char* words : {"left the domain", "Bad mesh", "Not all nodes", "highly skewed"})
       EXPECT_EQ(job.output.find(words), std::string::npos) << job.output;
     // from 8.5 mm down to 4 + 1.5 + 1 mm
     EXPECT_NEAR(sunk(), -0.002, 1e-4) << ends;
@@ -110,15 +110,33 @@ TEST_F(MeshWalls, ABlockMovesInAThinLayer) {
   }
 }
 
-// The script places the grain, in the rod: the cause is said when it starts.
+// The script places the grain, in the rod: the cause is said when it starts. The rod is five
+// diameters long, whose facets LIGGGHTS would refuse as they are.
 TEST_F(MeshWalls, AGrainThatBeginsInAnObstacleIsNamed) {
-  write(3, "from = [0.002, 0.006, 0.004]\nto = [0.01, 0.006, 0.004]\ndiameter = 0.004\n");
-  script_ = test::replaced(script_, "${particle1_z}", "0.006");
+  write(3, "from = [0.001, 0.006, 0.004]\nto = [0.011, 0.006, 0.004]\ndiameter = 0.002\n");
+  script_ = test::replaced(script_, "${particle1_z}", "0.0053");
   const JobResult job = run();
-  EXPECT_NE(job.output.find("particle 1 begins 1 of its radius deep in the 1. obstacle (mesh of a "
-                            "cylinder): a contact throws it out"),
+  EXPECT_NE(job.output.find("particle 1 begins 0.7 of its radius deep in the 1. obstacle (mesh of "
+                            "a cylinder): a contact throws it out"),
             std::string::npos)
       << job.output;
+  EXPECT_EQ(job.output.find("Bad mesh"), std::string::npos) << job.output;
+  test::expect_end(
+      job, 3,
+      {"Particle 1 began 0.7 of its radius deep in the 1. obstacle (mesh of a cylinder), "
+       "was thrown out, and has left the box since. What to do: start it outside"});
+}
+
+// LIGGGHTS would divide by the distance.
+TEST_F(MeshWalls, AGrainThatBeginsInASurfaceIsRefused) {
+  write(3,
+        "from = [0.002, 0.002, 0.002]\nto = [0.01, 0.01, 0.005]\nmotion = \"linear\"\n"
+        "velocity = [0.0, 0.0, -0.001]\n");
+  script_ = test::replaced(script_, "${particle1_z}", "0.005");
+  test::expect_end(run(), 2,
+                   {"particle 1 begins at [0.006, 0.006, 0.005], its centre in the surface of the "
+                    "1. obstacle (mesh of a block)",
+                    "start it beside"});
 }
 
 }  // namespace

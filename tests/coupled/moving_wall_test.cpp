@@ -147,7 +147,7 @@ TEST_F(MovingBlock, GoesOnFromACheckpointToTheBit) {
   }
 }
 
-// A script that asks for the words of a mesh that stands is told.
+// A script that asks for the words of a mesh that stands is told, and one that does not move it.
 TEST_F(MovingBlock, AsksForNoMotionThatIsNotThere) {
   write("motion = \"linear\"\nvelocity = [0.03, 0.02]");
   const std::string script =
@@ -156,6 +156,12 @@ TEST_F(MovingBlock, AsksForNoMotionThatIsNotThere) {
   const JobResult job = run("--out out");
   EXPECT_NE(job.exit_code, 0) << job.output;
   EXPECT_NE(job.output.find("nothing defines ${mesh2_motion}"), std::string::npos) << job.output;
+  folder_.write("in.liggghts", test::replaced(script, "fix turn", "#fix turn"));
+  const JobResult still = run("--out out --until 0.005");
+  EXPECT_NE(still.output.find("fix block mesh/surface (of fix blocks wall/gran) stands still, and "
+                              "the obstacle of the scene at its place moves"),
+            std::string::npos)
+      << still.output;
 }
 
 constexpr const char* kRolling = R"(title = "disc on a wall that moves along itself"

@@ -21,6 +21,7 @@ struct Situation {
   std::optional<Vec3> at = Vec3(0.01, 0.03, 0.0);
   std::vector<std::array<double, 2>> discs;
   double time = 0.1;
+  DeepStarts starts{};
 };
 
 std::string said(const Situation& now) {
@@ -39,7 +40,7 @@ std::string said(const Situation& now) {
     p.shape.radius = 1.25e-3;
     particles.push_back(p);
   }
-  return diagnosis(scene, make_plan(scene), now.time, now.at, record, particles);
+  return diagnosis(scene, make_plan(scene), now.time, now.at, record, particles, now.starts);
 }
 
 void expect_says(const Situation& now, const std::vector<std::string>& words) {
@@ -73,6 +74,22 @@ TEST(Diagnosis, OfADiscInAWallOrAnObstacle) {
   EXPECT_EQ(said({.to = moving, .at = Vec3(0.01, 0.0313, 0.0), .discs = {{0.01, 0.0313}}})
                 .find("deep in"),
             std::string::npos);
+}
+
+// It lies in nothing any more when it is too fast.
+TEST(Diagnosis, OfADiscThatWasThrownOut) {
+  const DeepStarts starts{{1, "0.5 of its radius deep in the 1. obstacle"}};
+  expect_says({.at = Vec3(0.01, 0.0315, 0.0), .discs = {{0.01, 0.03}}, .starts = starts},
+              {"It began 0.5 of its radius deep in the 1. obstacle, and was thrown out.",
+               "What to do: start it outside"});
+  expect_says({.at = std::nullopt, .discs = {{0.01, 0.03}}, .starts = starts}, {"It began 0.5"});
+  expect_says(
+      {.starts = starts},
+      {"Particle 1 began 0.5 of its radius deep in the 1. obstacle, was thrown out, and has "
+       "left the box since. What to do: start it outside"});
+  EXPECT_EQ(
+      said({.at = Vec3(0.01, 0.04, 0.0), .discs = {{0.01, 0.03}}, .starts = starts}).find("began"),
+      std::string::npos);
 }
 
 TEST(Diagnosis, OfAParticleThatIsTooFastByItself) {

@@ -84,8 +84,9 @@ TEST_F(ObstacleFiles, ACylinderThatIsNoneIsRefused) {
           {"obstacle.diameter", "in three dimensions only", "centre and diameter for a disc"});
   refused(3, "from = [0.002, 0.002, 0.004]\nto = [0.002, 0.002, 0.004]\ndiameter = 0.002",
           {"obstacle.to", "equal to from"});
-  refused(3, "from = [0.02, 0.02, 0.04]\nto = [0.02, 0.02, 0.05]\ndiameter = 0.002",
-          {"outside of the box"});
+  refused(
+      3, "from = [0.02, 0.02, 0.04]\nto = [0.02, 0.02, 0.05]\ndiameter = 0.002",
+      {"obstacle.from", "the cylinder reaches from", "outside of the box", "correct from and to"});
 }
 
 TEST_F(ObstacleFiles, AnAsciiAndABinaryMeshAreTheSame) {
@@ -122,7 +123,12 @@ TEST_F(ObstacleFiles, ABadMeshIsDescribed) {
   for (auto& t : (bad = box).triangles) std::swap(t[1], t[2]);
   refused(3, mesh(bad), {"face inwards"});
   refused(3, mesh(test::box_mesh(1e3 * kLow, 1e3 * kHigh)), {"750 times the box", "scale = 0.001"});
-  refused(3, mesh(box) + "scale = 0.001", {"the 1. obstacle's mesh", "no cell sees it"});
+  refused(3, mesh(test::box_mesh(1e3 * kLow, 1e3 * kHigh)) + "scale = 0.9",
+          {"is its file in mm? with scale = 0.001 it would reach from (0.002, 0.003, 0.001) m"});
+  refused(3, mesh(test::box_mesh(kLow / 0.0254, kHigh / 0.0254)) + "scale = 0.1",
+          {"outside of the box", "or is its file in inches? with scale = 0.0254"});
+  refused(3, mesh(box) + "scale = 0.001",
+          {"the 1. obstacle's mesh", "no cell sees it", "in m? with scale = 1"});
   refused(3, mesh(box) + "move = [0.1, 0, 0]", {"outside of the box", "give move"});
   refused(2, mesh(box), {"three dimensions only", "as an image"});
   refused(3, mesh(box) + "rotate = [0, 0, 0, 30]", {"no axis and angle"});
@@ -179,6 +185,8 @@ TEST_F(ObstacleFiles, ARawImageIsReadAndPlaced) {
   const Scene grey = read(3, std::string(kRaw) + "grey_levels = [20, 10]");
   EXPECT_EQ(grey.obstacles[0].image->voxels->solid[5], 1.0F);
   EXPECT_NEAR(grey.obstacles[0].image->voxels->solid[17], 0.3, 1e-7);
+  refused(3, std::string(kRaw) + "grey_levels = [20, 10]\nsolid = \"below\"",
+          {"solid stands beside grey_levels", "the higher first where solid is dark"});
   const Scene cut =
       read(3, std::string(kRaw) + "threshold = 20\ncut_from = [1, 2, 1]\ncut_to = [3, 3, 2]");
   EXPECT_EQ(cut.obstacles[0].image->voxels->size, (Cell3{2, 1, 1}));
@@ -225,6 +233,47 @@ std::string warnings_of(const Scene& s) {
   return all;
 }
 
+TEST_F(ObstacleFiles, AMeshWithAnotherScaleThanThatOfItsUnitIsNamed) {
+  const std::string key = mesh(test::box_mesh({0, 0, 0}, {4, 4, 6}));
+  EXPECT_EQ(warnings_of(read(3, key + "scale = 0.001")), "");
+  EXPECT_NE(
+      warnings_of(read(3, key + "scale = 0.01")).find("is its file in mm? with scale = 0.001"),
+      std::string::npos);
+  // one that is long, as a pipe through the box, would not lie in it by another unit
+  EXPECT_EQ(warnings_of(read(3, mesh(test::box_mesh({-0.05, 0.002, 0.002}, {0.05, 0.006, 0.006})))),
+            "");
+}
+
+TEST_F(ObstacleFiles, ThatLieInEachOtherAreNamed) {
+  const std::string ball = mesh(test::sphere_mesh({0.004, 0.004, 0.004}, 0.003, 2));
+  const auto said = [&](const std::string& obstacle) {
+    return warnings_of(read(3, ball + "[[obstacle]]\n" + obstacle));
+  };
+  const std::string block = "from = [0.005, 0.0, 0.0]\nto = [0.008, 0.008, 0.008]\n";
+  EXPECT_NE(
+      said(block).find("the 2. obstacle lies partly in the 1., and the 2. is a block: the load "
+                       "on cells of both counts for both"),
+      std::string::npos);
+  EXPECT_EQ(said("from = [0.007, 0.0, 0.0]\nto = [0.008, 0.008, 0.008]\n"), "");  // touches
+  EXPECT_NE(
+      said("centre = [0.006, 0.004, 0.004]\ndiameter = 0.004\n").find("partly in the 1.: the"),
+      std::string::npos);
+  EXPECT_EQ(said("centre = [0.004, 0.004, 0.004]\ndiameter = 0.0075\nhollow = true\n"), "");
+  const auto of_blocks = [&](const std::string& first, const std::string& second) {
+    return warnings_of(read(3, first + "[[obstacle]]\n" + second));
+  };
+  EXPECT_NE(of_blocks(block, block).find("the 2. obstacle lies wholly in the 1., and no fluid"),
+            std::string::npos);
+  const std::string slab = "from = [0.006, 0.0, 0.0]\nto = [0.008, 0.008, 0.008]\n";
+  EXPECT_NE(of_blocks(slab, block).find("the 1. obstacle lies wholly in the 2."),
+            std::string::npos);
+  EXPECT_EQ(of_blocks(block, "from = [0.0, 0.0, 0.0]\nto = [0.006, 0.002, 0.008]\n"), "");
+  // a ball before the block, and a ball that is a mesh beside it
+  EXPECT_NE(of_blocks("centre = [0.004, 0.004, 0.004]\ndiameter = 0.006\n", block)
+                .find("partly in the 1., and the 2. is a block"),
+            std::string::npos);
+}
+
 TEST_F(ObstacleFiles, AnImageThatLeavesAGapIsNamed) {
   folder_.write("rock.raw", bytes(24));
   const std::string raw = std::string(kRaw) + "threshold = 20\n";
@@ -255,7 +304,15 @@ TEST_F(ObstacleFiles, AnImageWithoutAWayForTheFlowIsNamed) {
   EXPECT_EQ(said(levels, "[0, 1e-3]").find("close the box"), std::string::npos);
   std::string open = levels;
   open[8 * 7 + 4] = '\0';
-  EXPECT_EQ(said(open, "[1e-3, 0]").find("close the box"), std::string::npos);
+  EXPECT_EQ(said(open, "[1e-3, 0]").find("the only way"), std::string::npos);
+  // (3, 6) and (4, 7) are open, and the two cells between them covered
+  std::string corner = open;
+  corner[8 * 7 + 3] = '\1';
+  corner[8 * 0 + 3] = '\1';
+  EXPECT_NE(said(corner, "[1e-3, 0]").find("the only way leads between covered cells that touch"),
+            std::string::npos);
+  corner[8 * 6 + 3] = '\1';
+  EXPECT_NE(said(corner, "[1e-3, 0]").find("obstacles close the box along x"), std::string::npos);
 }
 
 /// A .npy file. @param descr  e.g. <f4
@@ -285,7 +342,12 @@ TEST_F(ObstacleFiles, AnArrayOfNumpyIsRead) {
   folder_.write("rock.npy", npy("<f4", "(2, 1, 3)", data));
   refused(2, keys, {"array of 2 × 1 × 3 numbers", "a picture with colours", "mean(axis=2)"});
   folder_.write("rock.npy", npy("<f4", "(6,)", data));
-  refused(2, keys, {"array of 1 dimensions"});
+  refused(2, keys, {"array of 1 dimensions, of shape (6)", "[y][x] or [z][y][x]"});
+  folder_.write("rock.npy", npy("<f4", "(1, 1, 2, 3)", data));
+  refused(3, keys, {"of 4 dimensions, of shape (1, 1, 2, 3): colours", "array.mean(axis=3)"});
+  folder_.write("rock.npy", npy("<f4", "(8, 8, 3)", std::string(8 * 8 * 3 * 4, '\1')));
+  EXPECT_NE(warnings_of(read(3, keys)).find("shape (8, 8, 3), is that [y][x][colour]?"),
+            std::string::npos);
   const float nan[] = {0.0F, 0.25F, 0.5F, 1.0F, std::nanf(""), 0.0F};
   folder_.write("rock.npy", npy("<f4", "(2, 3)", {reinterpret_cast<const char*>(nan), sizeof nan}));
   refused(2, keys, {"is nan at voxel [1, 1, 0]"});

@@ -57,6 +57,11 @@ TEST(AdviceFor, SaysWhatToDoAboutMeshes) {
             std::string::npos);
   EXPECT_NE(dem::advice_for("ERROR on proc 0: assertion failed").find("a larger depth"),
             std::string::npos);
+  EXPECT_NE(dem::advice_for("ERROR: Fix mesh: Bad mesh, cannot continue.").find("long and thin"),
+            std::string::npos);
+  EXPECT_NE(
+      dem::advice_for("ERROR on proc 0: Internal error").find("its centre lay in the surface"),
+      std::string::npos);
   EXPECT_EQ(dem::advice_for("Illegal fix command"), "");
 }
 

@@ -86,6 +86,36 @@ TEST(Walls, ThatAreOneCylinderAreNotNamed) {
   expect_one(scene.found(), "fix drum wall/gran (cylinder) is a wall for the particles only");
 }
 
+// One mesh for both, which only one of them moves; an engine may not say.
+TEST(Walls, ThatOnlyOneMovesAreNamed) {
+  const std::string gate = mesh_text({0.0, 0.0, 0.1}, {0.3, 0.2, 0.15});
+  const std::string other = mesh_text({0.0, 0.0, 0.2}, {0.3, 0.2, 0.25});
+  Scene scene;
+  scene.fluid.bodies = {"obstacle: " + other, "obstacle: " + gate + motion_text(true)};
+  const auto solid_is = [&](const std::string& motion) {
+    scene.solid.bodies = {"fix plate mesh/surface, " + other + motion_text(false),
+                          "fix gate mesh/surface (of fix gates wall/gran), " + gate + motion};
+  };
+  solid_is(motion_text(true));
+  EXPECT_TRUE(scene.found().empty());
+  solid_is("");
+  EXPECT_TRUE(scene.found().empty());
+  solid_is(motion_text(false));
+  expect_one(scene.found(),
+             "fix gate mesh/surface (of fix gates wall/gran) stands still, and the obstacle of the "
+             "scene at its place moves: grains and fluid will meet two walls; let the script move "
+             "it, with fix ID all move/mesh mesh MESH ${mesh2_motion}");
+  scene.fluid.bodies[1] = "obstacle: " + gate;
+  EXPECT_TRUE(scene.found().empty());
+  solid_is(motion_text(true));
+  expect_one(scene.found(), "moves, and the obstacle of the scene at its place stands still");
+  scene.fluid.bodies = {"disc1 (cylinder)"};
+  scene.solid.bodies = {"fix drum wall/gran (cylinder)" + motion_text(true)};
+  EXPECT_TRUE(scene.found().empty());
+  scene.solid.bodies = {"fix drum wall/gran (cylinder)" + motion_text(false)};
+  expect_one(scene.found(), "fix drum wall/gran (cylinder) stands still, and a disc of the scene");
+}
+
 TEST(Walls, OfASideThatDoesNotSayAreNotGuessed) {
   Scene scene;
   scene.solid.sides.reset();
