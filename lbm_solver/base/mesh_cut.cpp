@@ -17,7 +17,6 @@ namespace lbm {
 namespace {
 
 using Polygon = std::vector<Vec3>;
-
 constexpr double kFlat = 1e-10;      // of the cosine between two triangles of one plane
 constexpr double kSharp = 0.009;     // rad: LIGGGHTS warns below 0.5 degrees, and stops at 0.0045
 constexpr double kLongest = 60.0;    // length over width of a piece
@@ -39,12 +38,16 @@ double smallest_angle(const TriangleMesh& mesh, const TriangleMesh::Triangle& t)
   return smallest_angle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
 }
 
+double length_of(const TriangleMesh& mesh, const TriangleMesh::Triangle& t, int side) {
+  return (mesh.vertices[t[(side + 1) % 3]] - mesh.vertices[t[side]]).norm();
+}
+
 /// The side of a triangle that is longest, or shortest, by its first corner.
 int side_of(const TriangleMesh& mesh, const TriangleMesh::Triangle& t, bool longest) {
   int found = 0;
   double length = 0.0;
   for (int k = 0; k < 3; ++k) {
-    const double now = (mesh.vertices[t[(k + 1) % 3]] - mesh.vertices[t[k]]).norm();
+    const double now = length_of(mesh, t, k);
     if (k > 0 && (now > length) != longest) continue;
     found = k;
     length = now;
@@ -80,7 +83,6 @@ Polygon half(const Polygon& polygon, int axis, double place, double sign, double
 struct Room {
   Vec3 low, high;
   double near;
-
   bool holds(const Vec3& x) const {
     return (low - x).maxCoeff() <= near && (x - high).maxCoeff() <= near;
   }
@@ -109,7 +111,13 @@ struct Room {
     };
     return {at(middle - size), at(middle + size)};
   }
-  Vec3 pressed_in(const Vec3& x) const { return x.cwiseMax(low).cwiseMin(high); }
+  /// On a side, where it lies there but for round-off.
+  Vec3 settled(Vec3 x) const {
+    for (int k = 0; k < 3; ++k)
+      for (const double side : {low[k], high[k]})
+        if (std::abs(x[k] - side) <= near) x[k] = side;
+    return x;
+  }
   int sides_at(const Vec3& x) const {
     int count = 0;
     for (int k = 0; k < 3; ++k) count += (x[k] <= low[k] ? 1 : 0) + (x[k] >= high[k] ? 1 : 0);
@@ -222,7 +230,7 @@ class Gathered {
 
  private:
   std::uint32_t vertex(const Vec3& corner) {
-    const Vec3 x = room_.pressed_in(corner);
+    const Vec3 x = room_.settled(corner);
     std::array<std::int64_t, 3> key;
     for (int k = 0; k < 3; ++k) key[k] = std::llround((x[k] - room_.low[k]) / room_.near);
     const auto [at, is_new] =
@@ -230,7 +238,6 @@ class Gathered {
     if (is_new) mesh_.vertices.push_back(x);
     return at->second;
   }
-
   Room room_;
   TriangleMesh mesh_;
   std::map<std::array<std::int64_t, 3>, std::uint32_t> numbers_;
@@ -249,9 +256,7 @@ void take_needles_out(TriangleMesh& mesh, const Room& room) {
     std::vector<TriangleMesh::Triangle> kept;
     for (const auto& t : mesh.triangles) {
       const int k = side_of(mesh, t, false), far = side_of(mesh, t, true);
-      const auto length = [&](int side) {
-        return (mesh.vertices[t[(side + 1) % 3]] - mesh.vertices[t[side]]).norm();
-      };
+      const auto length = [&](int side) { return length_of(mesh, t, side); };
       const bool sharp = smallest_angle(mesh, t) < kSharp, tiny = length(k) < least;
       if (!sharp && !tiny) {
         kept.push_back(t);
@@ -314,7 +319,7 @@ TriangleMesh clipped(const TriangleMesh& mesh, const Vec3& low, const Vec3& high
   };
   if (holds_all(mesh.vertices) && sharpest_angle(mesh) >= kSharp) {
     TriangleMesh same = mesh;
-    for (Vec3& v : same.vertices) v = room.pressed_in(v);
+    for (Vec3& v : same.vertices) v = room.settled(v);
     return same;
   }
   Gathered part(room);
@@ -324,10 +329,23 @@ TriangleMesh clipped(const TriangleMesh& mesh, const Vec3& low, const Vec3& high
   return part.mesh().triangles.empty() ? mesh : packed(part.mesh());
 }
 
+TriangleMesh without_ends(const TriangleMesh& mesh, int axis, double low, double high) {
+  const auto lies_at = [&](const auto& t, double place) {
+    return std::ranges::all_of(t, [&](auto v) { return mesh.vertices[v][axis] == place; });
+  };
+  const auto at_low = [&](const auto& t) { return lies_at(t, low); };
+  const auto at_high = [&](const auto& t) { return lies_at(t, high); };
+  const auto ends = std::ranges::count_if(mesh.triangles, at_low);
+  if (ends == 0 || ends != std::ranges::count_if(mesh.triangles, at_high)) return mesh;
+  TriangleMesh rest = mesh;
+  std::erase_if(rest.triangles, [&](const auto& t) { return at_low(t) || at_high(t); });
+  return rest.triangles.empty() ? mesh : packed(rest);
+}
+
 TriangleMesh of_fewer_sides(const TriangleMesh& cylinder) {
   constexpr std::uint32_t every = 4;  // corner stays
-  const auto before = static_cast<std::uint32_t>((cylinder.vertices.size() - 2) / 2);
-  const std::uint32_t sides = before / every;
+  const auto before = static_cast<std::uint32_t>((cylinder.vertices.size() - 2) / 2),
+             sides = before / every;
   const auto area = [](std::uint32_t corners) {  // of a polygon in a circle
     return corners * std::sin(2.0 * std::numbers::pi / corners);
   };

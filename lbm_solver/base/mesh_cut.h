@@ -7,15 +7,19 @@ namespace lbm {
 
 /// The part of a surface that lies in a box, of triangles that LIGGGHTS takes: it refuses those
 /// with an angle below 0.0045, and warns below 0.0087. Triangles that cross the box's sides are cut
-/// there, what lies beyond is left out, and the surface is open where it was cut; what lies beyond
-/// by round-off is put on the side. Pairs of triangles that make a long quadrangle become pieces
-/// along it. What is still sharp (slivers of a cut) goes: a short side becomes one vertex, a flat
-/// triangle is dropped. A surface that lies in the box and has no sharp triangle stays as it is; so
-/// does one that has nothing in the box.
+/// there, what lies beyond is left out, and the surface is open where it was cut; corners that lie
+/// on a side but for round-off are put there. Pairs of triangles that make a long quadrangle become
+/// pieces along it. What is still sharp (slivers of a cut) goes: a short side becomes one vertex, a
+/// flat triangle is dropped. A surface that lies in the box and has no sharp triangle stays as it
+/// is; so does one that has nothing in the box.
 TriangleMesh clipped(const TriangleMesh& mesh, const Vec3& low, const Vec3& high);
 
 /// Smallest angle of all triangles [rad].
 double sharpest_angle(const TriangleMesh& mesh);
+
+/// A surface without its ends in two periodic sides, where it has as many triangles in each: it
+/// goes on through them, and LIGGGHTS stops at triangles that are one and the same.
+TriangleMesh without_ends(const TriangleMesh& mesh, int axis, double low, double high);
 
 /// A cylinder of a quarter of the sides, and of the same volume: LIGGGHTS keeps a list of the
 /// triangles near each grain, 2000 by default, and those of a rod thinner than the grains are many.

@@ -83,7 +83,11 @@ TriangleMesh offered_mesh(const Scene& s, const ObstacleScene& o) {
       high[k] = beyond(high[k], s.box.origin[k] + s.box.size[k], 1.0, s.box.size[k]);
     }
   }
-  return clipped(whole, low, high);
+  TriangleMesh part = clipped(whole, low, high);
+  for (int k = 0; k < s.box.dimension; ++k)
+    if (s.box.sides[k] == SideKind::Periodic)
+      part = without_ends(part, k, s.box.origin[k], s.box.origin[k] + s.box.size[k]);
+  return part;
 }
 
 /// The box around a mesh as it lies at a time.

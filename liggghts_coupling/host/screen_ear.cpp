@@ -53,6 +53,9 @@ std::string advice_for(const std::string& error) {
     return "if the script has a mesh, it may have triangles longer than a periodic side of the "
            "box, in two dimensions "
            "than box.depth: take the scene's own, ${mesh1}, or a larger depth";
+  if (says("auto_remove_duplicates"))
+    return "two triangles of a mesh are one and the same, as the ends in two periodic sides of a "
+           "body that goes on through them: leave these out, or take the scene's own, ${mesh1}";
   if (says("Bad mesh"))
     return "a mesh must have no long and thin triangles: take the scene's own, ${mesh1}, whose "
            "triangles are parted where they are long, or make it anew with triangles of sides "

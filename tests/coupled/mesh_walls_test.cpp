@@ -73,7 +73,7 @@ probe_every = 0.01
 
 // Through the periodic sides and through walls; the grain rests on it.
 TEST_F(MeshWalls, ARodThatReachesBeyondTheBoxIsCutForTheSolid) {
-  for (const char* ends : {"from = [-0.004, 0.006, 0.004]\nto = [0.016, 0.006, 0.004]",
+  for (const char* ends : {"from = [0.0, 0.006, 0.004]\nto = [0.012, 0.006, 0.004]",
                            "from = [0.006, -0.02, 0.004]\nto = [0.006, 0.02, 0.004]"}) {
     write(3, std::string(ends) + "\ndiameter = 0.003\n");
     const JobResult job = run();

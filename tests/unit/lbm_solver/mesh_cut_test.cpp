@@ -142,6 +142,18 @@ TEST(CutMeshes, WhatLiesInTheBoxStaysAsItIs) {
   EXPECT_EQ(bounds(block)[1].y(), kHigh.y());
 }
 
+TEST(CutMeshes, EndsInTwoPeriodicSidesAreLeftOut) {
+  const TriangleMesh block = test::box_mesh({0.0, 0.001, 0.0}, {0.012, 0.004, 0.002});
+  const TriangleMesh open = without_ends(block, 0, kLow.x(), kHigh.x());
+  EXPECT_EQ(open.triangles.size(), 8U);
+  for (const auto& t : open.triangles) EXPECT_EQ(open.area_vector(t).x(), 0.0);
+  EXPECT_EQ(without_ends(block, 2, kLow.z(), kHigh.z()).triangles, block.triangles);  // in one
+  const TriangleMesh rod =
+      clipped(cylinder_surface({0.0, 0.005, 0.007}, {0.012, 0.005, 0.007}, 0.001), kLow, kHigh);
+  const TriangleMesh pipe = without_ends(rod, 0, kLow.x(), kHigh.x());
+  EXPECT_NEAR(area(rod) - area(pipe), 2.0 * std::numbers::pi * 1e-6, 1e-12);
+}
+
 // Long triangles of any mesh, as of a plate: ends stay where they are.
 TEST(CutMeshes, AThinPlateIsParted) {
   const TriangleMesh plate = test::box_mesh({0.001, 0.001, 0.001}, {0.011, 0.00102, 0.006});

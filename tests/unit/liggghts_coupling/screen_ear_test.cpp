@@ -57,6 +57,9 @@ TEST(AdviceFor, SaysWhatToDoAboutMeshes) {
             std::string::npos);
   EXPECT_NE(dem::advice_for("ERROR on proc 0: assertion failed").find("a larger depth"),
             std::string::npos);
+  EXPECT_NE(dem::advice_for("Fix mesh: Bad mesh, try re-running with 'heal auto_remove_duplicates'")
+                .find("one and the same"),
+            std::string::npos);
   EXPECT_NE(dem::advice_for("ERROR: Fix mesh: Bad mesh, cannot continue.").find("long and thin"),
             std::string::npos);
   EXPECT_NE(
