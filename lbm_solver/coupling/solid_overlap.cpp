@@ -73,7 +73,6 @@ double depth_of(const Scene& s, const ObstacleScene& o, const Vec3& centre, doub
 
 std::vector<SolidOverlap> solid_overlaps(const Scene& s, const Vec3& centre, double r,
                                          double time) {
-  constexpr const char* sides[] = {"left", "right", "bottom", "top", "back", "front"};
   std::vector<SolidOverlap> found;
   for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
     const ObstacleScene& o = s.obstacles[i];
@@ -95,7 +94,7 @@ std::vector<SolidOverlap> solid_overlaps(const Scene& s, const Vec3& centre, dou
     const double low = centre[k] - s.box.origin[k], high = s.box.size[k] - low;
     for (const int up : {0, 1})
       if (const double depth = r - (up ? high : low); depth > 0.0)
-        found.push_back({fmt::format("the wall \"{}\"", sides[2 * k + up]), depth});
+        found.push_back({fmt::format("the wall \"{}\"", kSideNames[2 * k + up]), depth});
   }
   std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.depth > b.depth; });
   return found;

@@ -38,8 +38,7 @@ void read_extent(TableReader& t, const BoxScene& box, int axis, BoundaryScene& b
 }
 
 SideName read_side(TableReader& t, const BoxScene& box) {
-  std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
-  sides.resize(2 * box.dimension);
+  const std::vector<std::string> sides(kSideNames.begin(), kSideNames.begin() + 2 * box.dimension);
   if (!t.has("side"))
     t.fail("side", "is missing", fmt::format("give one of: {}", fmt::join(sides, ", ")));
   const std::string name = t.choice_or("side", "", sides);

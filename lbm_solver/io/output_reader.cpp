@@ -49,8 +49,7 @@ SensorScene read_sensor(TableReader t, const BoxScene& box) {
     if (t.has("from")) s.from = t.vector("from", d, "[m]");
     if (t.has("to")) s.to = t.vector("to", d, "[m]");
   } else {
-    std::vector<std::string> sides{"left", "right", "bottom", "top", "back", "front"};
-    sides.resize(2 * d);
+    const std::vector<std::string> sides(kSideNames.begin(), kSideNames.begin() + 2 * d);
     if (!t.has("side"))
       t.fail("side", "is missing", fmt::format("give one of: {}", fmt::join(sides, ", ")));
     const std::string side = t.choice_or("side", "", sides);

@@ -84,14 +84,13 @@ std::optional<Beyond> part_leaves(const Scene& s, const ObstacleScene& o) {
 
 /// What LIGGGHTS would stop at, without saying why.
 void check_for_liggghts(const Scene& s, const ObstacleScene& o, std::size_t number, Plan& plan) {
-  constexpr const char* sides[] = {"left", "right", "bottom", "top", "back", "front"};
   if (o.motion->surface_only) return;
   if (const auto beyond = part_leaves(s, o))
     plan.warnings.push_back(fmt::format(
         "the {}. obstacle reaches through the wall \"{}\" at {:.4g} s: LIGGGHTS stops there (a "
         "mesh \"left the domain\"), and grains between the two are crushed; keep it within the box "
         "all along its way",
-        number, sides[beyond->side], beyond->time));
+        number, kSideNames[beyond->side], beyond->time));
   if (const double d = s.particles->diameter.hi;
       s.box.dimension == 2 && reach_in_layer(s) < kThinLayer * d)
     plan.warnings.push_back(fmt::format(

@@ -142,8 +142,6 @@ void check_obstacle(const Scene& s, const ObstacleScene& o) {
   }
 }
 
-constexpr const char* kSideNames[] = {"left", "right", "bottom", "top", "back", "front"};
-
 void check_boundaries(const Scene& s) {
   for (std::size_t i = 0; i < s.boundaries.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
@@ -156,7 +154,7 @@ void check_boundaries(const Scene& s) {
       if (shared)
         throw InputError(s.file,
                          fmt::format("boundaries {} and {} overlap on side \"{}\"", j + 1, i + 1,
-                                     kSideNames[static_cast<int>(a.side)]),
+                                     name_of(a.side)),
                          "part them with from and to, or leave one out");
     }
 }
