@@ -86,12 +86,12 @@ void row_moments(Populations& f, const EsotericPull& stream, int y, int z, const
     else
       MomentsOfRow<L, double>{medium}(f, stream, y, z, rho, u, solid);
   };
-  switch (f.lattice().Q) {
-    case 9:
+  switch (f.lattice().id) {
+    case VelocitySet::D2Q9:
       return run(D2Q9());
-    case 19:
+    case VelocitySet::D3Q19:
       return run(D3Q19());
-    default:
+    case VelocitySet::D3Q27:
       return run(D3Q27());
   }
 }
