@@ -345,6 +345,8 @@ TEST(ViscosityOfAScene, WarnsOfALawThatDoesNotAct) {
   const auto bounds = [&](const std::string& both) {
     return make_plan(scene_with(folder, kGel + ", " + both + "}"));
   };
+  EXPECT_TRUE(warns(bounds("nu_min = 1e-5, nu_max = 3e-5"),
+                    "nu_min and nu_max change the flow rate of a plane channel by"));
   EXPECT_TRUE(warns(bounds("nu_min = 1e-5, nu_max = 3e-5"), "take a larger nu_max"));
   EXPECT_TRUE(warns(bounds("nu_min = 1e-4, nu_max = 1e-2"), "take a smaller nu_min"));
 }
