@@ -42,7 +42,7 @@ class EngineTest : public testing::TestWithParam<std::string> {
     if (!skip_.empty()) GTEST_SKIP() << skip_;
     const test::TemporaryFolder folder;
     const auto job =
-        test::run(kJudge + options + " -- " + command(GetParam()), folder.path(), 100.0);
+        test::run(kJudge + options + " -- " + command(GetParam()), folder.path(), 250.0);
     EXPECT_FALSE(job.timed_out) << job.output;
     EXPECT_EQ(job.exit_code, 0) << job.output;
   }
@@ -125,7 +125,7 @@ TEST(Judge, FindsEverySin) {
       const test::TemporaryFolder folder;
       return test::run(kJudge + sin.check + " -- " + kPython +
                            BPLBM_SOURCE_DIR "/tests/support/bad_engine.py " + sin.name,
-                       folder.path(), 60.0);
+                       folder.path(), 250.0);
     }));
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     SCOPED_TRACE(std::string(kSins[i].name) + " before " + kSins[i].check);
