@@ -10,6 +10,7 @@ from bplbm import Run, draw_viscosity, quantity, read_table, result, studies
 REST, SHEARED, STOPPED = (0.15, 0.3), (0.5, 1.3), (1.5, 1.8)  # s: after the transients, see plates.csv
 SHEAR_RATE, YIELD_STRESS, PLASTIC = 15.0, 13.7, 0.15  # 1/s, Pa, Pa s
 OIL = "fluid-oil"
+SHOWN = {"at rest": 0.2, "sheared": 1.2}  # s, in the picture of the viscosity
 CREEP_TOLERANCE, STOPPED_TOLERANCE, SHEARED_TOLERANCE = 0.05, 0.15, 0.20
 ALONE, ALONE_TOLERANCE = 0.6, 0.25  # without a run to compare with
 
@@ -103,13 +104,17 @@ def picture_viscosity(run):
     """A plane across the box while the mud holds the cuttings, and while it is sheared."""
     if "viscosity" not in run.frame(run.frames()[-1][1]):
         return
-    figure, axes = plt.subplots(1, 2, figsize=(7.6, 3.6), sharey=True)
+    near = {title: min(run.frames(), key=lambda f, time=time: abs(f[0] - time)) for title, time in SHOWN.items()}
+    near = {title: frame for title, frame in near.items() if abs(frame[0] - SHOWN[title]) < 0.1}
+    if not near:  # a run that was cut short
+        return
+    figure, axes = plt.subplots(1, len(near), figsize=(3.8 * len(near), 3.6), sharey=True, squeeze=False)
     thinnest, thickest = 0.5 * apparent(), run.parameters["density"] * 0.0443
-    for ax, (title, time) in zip(axes, {"at rest": 0.2, "sheared": 1.2}.items()):
-        time, name = min(run.frames(), key=lambda f: abs(f[0] - time))
+    for ax, (title, (time, name)) in zip(axes[0], near.items()):
         image = draw_viscosity(ax, run, name, "x", (thinnest, thickest))
         ax.set_title(f"{title}, {time:.1f} s", fontsize=9)
-    axes[1].set_ylabel("")
+    for ax in axes[0][1:]:
+        ax.set_ylabel("")
     figure.colorbar(image, ax=axes, label="viscosity of the mud [Pa s]", fraction=0.03, pad=0.02)
     run.save(figure, "field.png")
 

@@ -300,7 +300,7 @@ std::string describe_cost(const Scene& s, const Plan& p) {
   const double total = step * static_cast<double>(p.intervals) * p.fluid_steps;
   return fmt::format(
       "on           {}\noff          {}\n"
-      "cost         {:.3g} MB; {:.3g} s of fluid at the {:.0f} million updates/s just measured, "
+      "cost         {:.3g} MB; {:.3g} s of fluid at the {:.3g} million updates/s just measured, "
       "one "
       "thread{}\n",
       parts.on(), parts.off(), bytes * 1e-6, total, cells / step * 1e-6,

@@ -22,7 +22,10 @@ constexpr double kMuchRoundOff = 0.01;
 constexpr double kMargin = 1.5;       // of an advice against it, which is rounded
 constexpr double kRoom = 2.0;         // of a velocity scale over the mean speed
 constexpr double kThinChannel = 8.0;  // cells
-constexpr double kFollows = 0.05;     // of an amplitude, or of a period, which a flow may lack
+constexpr int kTurns = 2;             // of a table that goes up and down
+constexpr int kHarmonics = 64;        // of a table, that are looked at
+constexpr int kSamples = 4 * kHarmonics;
+constexpr double kFollows = 0.05;  // of an amplitude, or of a period, which a flow may lack
 constexpr double kUnknown = std::numeric_limits<double>::infinity();  // a stress that may be any
 
 /// Smallest distance between walls that lie along an axis [m]; 0: there are none.
@@ -123,16 +126,39 @@ void check_held(const Scene& s, Plan& plan) {
       yield, stress, grains ? ", single particles by their weight included" : ""));
 }
 
+/// Period of what swings most in a table, by the largest harmonic of its span [s]; 0 where a table
+/// that does not repeat goes up and down less than once.
+double period_of(const TimeTableScene& table) {
+  const std::vector<double>&times = table.times, &factors = table.factors;
+  const double span = times.empty() ? 0.0 : times.back() - times.front();
+  int turns = 0;
+  for (std::size_t i = 1; i + 1 < times.size(); ++i)
+    turns += (factors[i] - factors[i - 1]) * (factors[i + 1] - factors[i]) < 0.0;
+  if (span == 0.0 || (!table.repeats && turns < kTurns)) return 0.0;
+  std::vector<std::complex<double>> harmonics(kHarmonics);
+  std::size_t line = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double part = (i + 0.5) / kSamples, time = times.front() + part * span;
+    while (times[line + 1] < time) ++line;
+    const double value = std::lerp(factors[line], factors[line + 1],
+                                   (time - times[line]) / (times[line + 1] - times[line]));
+    for (int k = 0; k < kHarmonics; ++k)
+      harmonics[k] += std::polar(value, -2.0 * std::numbers::pi * (k + 1) * part);
+  }
+  const auto largest = std::ranges::max_element(
+      harmonics, {}, [](const std::complex<double>& h) { return std::norm(h); });
+  return span / static_cast<double>(largest - harmonics.begin() + 1);
+}
+
 void check_lag(const Scene& s, const BoundaryScene& b, Plan& plan) {
-  const bool repeats = b.table.repeats && !b.table.times.empty();
-  if (b.frequency == 0.0 && !repeats) return;
-  const double period =
-      b.frequency > 0.0 ? 1.0 / b.frequency : b.table.times.back() - b.table.times.front();
+  const double period = b.frequency > 0.0 ? 1.0 / b.frequency : period_of(b.table);
+  if (period == 0.0) return;
   const int axis = axis_of(b.side), cells = plan.domain.cells()[axis];
-  const std::complex<double> part = held_part(
-      {cells, gap_along(s, axis) / plan.units.dx, (plan.kernel.parameters.tau - 0.5) / 3.0,
-       std::ranges::count(s.boundaries, BoundaryScene::Kind::Outflow, &BoundaryScene::kind) > 0},
-      period / plan.units.dt);
+  const bool outflow =
+      std::ranges::count(s.boundaries, BoundaryScene::Kind::Outflow, &BoundaryScene::kind) > 0;
+  const std::complex<double> part = held_part({cells, gap_along(s, axis) / plan.units.dx,
+                                               (plan.kernel.parameters.tau - 0.5) / 3.0, outflow},
+                                              period / plan.units.dt);
   const double amplitude = std::abs(part), late = -std::arg(part) / (2.0 * std::numbers::pi);
   if (std::abs(amplitude - 1.0) < kFollows && std::abs(late) < kFollows) return;
   const bool solids = !s.obstacles.empty() || s.coupling;
@@ -142,7 +168,9 @@ void check_lag(const Scene& s, const BoundaryScene& b, Plan& plan) {
       "take a longer period, or a boundary of kind \"velocity\", whose flow follows at once",
       PressureControl::time(cells) * plan.units.dt, period, 100.0 * amplitude, std::abs(late),
       late < 0.0 ? "early" : "late",
-      solids ? " in an empty box, and much less through solids" : ""));
+      solids    ? " in an empty box, and much less through solids"
+      : outflow ? " (before an outflow up to a tenth of the flow less)"
+                : ""));
 }
 
 /// What can be done against round-off. Its part falls with the square of a longer step; with the

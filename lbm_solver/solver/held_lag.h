@@ -19,7 +19,7 @@ struct HeldChannel {
 /// |I| e being nonlinear: of I cos θ times e it is (2/π) |I| (e + e* (I/|I|)²/3). Z_in is that of a
 /// plane channel that takes up sound [Womersley1955]: with z = iω/(1 - tanh(λ)/λ) a cell, λ = ½ gap
 /// √(iω/nu), and the fluid's compliance 3 iω it is √(z/3iω) tanh(L √(3iω z)) before a pressure. It
-/// is within 0.02 of the flow that comes before a pressure, 0.11 before an outflow,
+/// is within 0.03 of the flow that comes before a pressure, 0.11 before an outflow,
 /// 0.08 about a mean flow (docs/boundaries.md). Solids in the box resist more: less of the flow
 /// comes.
 /// @param period  [steps]

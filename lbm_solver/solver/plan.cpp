@@ -57,6 +57,14 @@ Side to_side(SideKind kind) {
 void count_reynolds(const Scene& s, Plan& plan) {
   plan.reynolds_length = s.box.size.x();
   plan.reynolds_of = "the box along x";
+  bool walls = false;  // a channel's length is no length of its flow
+  for (int k = 0; k < s.box.dimension; ++k) {
+    if (s.box.sides[k] != SideKind::Wall || (walls && s.box.size[k] >= plan.reynolds_length))
+      continue;
+    walls = true;
+    plan.reynolds_length = s.box.size[k];
+    plan.reynolds_of = fmt::format("the gap between the walls along {}", "xyz"[k]);
+  }
   const auto round = std::ranges::find_if(s.obstacles, &ObstacleScene::round);
   if (s.particles) {
     plan.reynolds_length = s.particles->diameter.lo;

@@ -46,8 +46,13 @@ void check_times(const Scene& s, const TimeTableScene& table, const std::string&
 
 /// A table of which the run sees little, or that it leaves behind at once.
 void check_span(const Scene& s, const TimeTableScene& table, const std::string& key, Plan& plan) {
-  if (table.times.empty()) return;
-  if (const std::string odd = odd_times(table.times, table.repeats, s.end_time); !odd.empty())
+  std::vector<double> times = table.times;
+  const std::vector<double>& factors = table.factors;
+  if (!table.repeats)  // a value that stays says nothing, however long
+    while (times.size() > 1 && factors[times.size() - 1] == factors[times.size() - 2])
+      times.pop_back();
+  if (times.size() < 2) return;
+  if (const std::string odd = odd_times(times, table.repeats, s.end_time); !odd.empty())
     plan.warnings.push_back(key + " " + odd);
 }
 

@@ -166,27 +166,22 @@ void check_cost(const Scene& s, const ViscosityLaw& law, double plastic, Plan& p
       duration_text(seconds), kLowerYield));
 }
 
-/// Shear rate at the walls of the channel that the scene is, else the typical one [1/s].
-double wall_rate(const Scene& s, const ViscosityLaw& law) {
-  const double viscous = channel_wall_stress(s) - s.fluid.law.yield_stress;
-  return viscous > 0.0 ? std::pow(viscous / s.fluid.law.consistency, 1.0 / s.fluid.law.index)
-                       : law.shear_rate();
-}
-
-/// What the bounds do to the flow rate of a plane channel: a part, and words.
+/// What the bounds do to the flow rate of the plane channel that a scene is: a part, and words;
+/// none where it is no channel that a known stress drives, or where nothing yields.
 std::pair<double, std::string> creep_of(const Scene& s, const ViscosityLaw& law) {
-  const double rate = wall_rate(s, law), part = creep_in_channel(s.fluid, law, rate);
+  const double viscous = channel_wall_stress(s) - s.fluid.law.yield_stress;
+  if (!parts_of(s.fluid.law.model).consistency || viscous <= 0.0) return {};
+  const double rate = std::pow(viscous / s.fluid.law.consistency, 1.0 / s.fluid.law.index);
+  const double part = creep_in_channel(s.fluid, law, rate);
   const std::string plug = yields(s) ? fmt::format(", where {:.2g} of its width do not yield",
                                                    plug_in_channel(s.fluid, rate))
                                      : "";
-  return {part,
-          fmt::format("nu_min and nu_max change the flow rate of a plane channel by {:+.2g} %, "
-                      "at {:.3g} 1/s at its walls{}; the grid's error comes on top",
-                      100.0 * part, rate, plug)};
+  return {part, fmt::format("nu_min and nu_max change the flow rate of this channel by {:+.2g} %, "
+                            "at {:.3g} 1/s at its walls{}; the grid's error comes on top",
+                            100.0 * part, rate, plug)};
 }
 
 void check_creep(const Scene& s, const ViscosityLaw& law, Plan& plan) {
-  if (!parts_of(s.fluid.law.model).consistency) return;
   if (const auto [part, text] = creep_of(s, law); std::abs(part) > kMuchCreep)
     plan.warnings.push_back("fluid.viscosity: " + text + "; take " +
                             (part > 0.0 ? "a larger nu_max" : "a smaller nu_min"));
@@ -291,7 +286,7 @@ std::vector<std::string> describe_viscosity(const Scene& s, const Plan& plan) {
                     "1/s",
                     v.yield_stress / viscous_stress(s, rate), rate));
   }
-  if (parts.consistency) lines.push_back(creep_of(s, law).second);
+  if (const std::string creep = creep_of(s, law).second; !creep.empty()) lines.push_back(creep);
   if (const std::string text = defaults_text(s, law); !text.empty())
     lines.push_back("by default " + text);
   return lines;

@@ -164,6 +164,14 @@ TEST(HeldOpening, SaysHowFarItFollowsAnOscillation) {
   EXPECT_TRUE(
       has("table = \"tide.csv\"\nrepeat = \"periodic\"", "some 51 % comes, 0.15 of a period late"));
   EXPECT_FALSE(has("frequency = 0.003", "comes"));
+  // of a table what swings most counts: twice in its span here, repeated or not
+  folder.write("twice.csv", "time,factor\n0,0\n0.97,1\n1.94,0\n2.91,1\n3.88,0\n");
+  for (const std::string repeat : {"periodic", "once"})
+    EXPECT_TRUE(has("table = \"twice.csv\"\nrepeat = \"" + repeat + "\"",
+                    "with a period of 1.94 s some 51 % comes"))
+        << repeat << said("table = \"twice.csv\"\nrepeat = \"" + repeat + "\"");
+  folder.write("ramp.csv", "time,factor\n0,0\n1,1\n");
+  EXPECT_FALSE(has("table = \"ramp.csv\"\nrepeat = \"once\"", "comes"));
 }
 
 TEST(HeldFlow, WarnsWhereRoundOffShowsInTheForce) {

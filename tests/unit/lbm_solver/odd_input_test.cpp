@@ -150,13 +150,14 @@ TEST_F(OddInput, TablesOfAnotherUnitAreWarnedOf) {
   expect_in(once("2,0\n3,1\n"), "all of it lies behind the run, which keeps its first line");
   expect_in(once("-3,0\n-2,1\n0,1\n"), "all of it lies before the run, which keeps its last");
   EXPECT_EQ(once("0,0\n9,1\n"), "") << "a part of a longer history";
+  EXPECT_EQ(once("0,0\n0.5,1\n1e6,1\n"), "") << "a value that stays";
   expect_in(warnings(table("time,factor\n0,1\n2e6,0\n4e6,1\n", periodic)),
             "it ends after 2.5e-07 of the period; its times are in seconds, are they in µs?");
   Scene quick =
       read_scene({scene(table("time,factor\n0,0\n5e-4,1\n6e-4,1\n", "table = \"in.csv\""))});
   quick.numerics.time_step = 1e-5;
   expect_in(fmt::format("{}", fmt::join(make_plan(quick).warnings, "\n")),
-            "it is over after 0.06 % of the run; its times are in seconds");
+            "it is over after 0.05 % of the run; its times are in seconds");
   expect_in(warnings(table("time,factor\n0,1\n4,1\n", "table = \"in.csv\"\nfrequency = 0.25")),
             "the table of boundary 3 stands beside a frequency: the value is multiplied by both");
 }

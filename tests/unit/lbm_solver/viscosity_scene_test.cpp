@@ -341,12 +341,12 @@ TEST(ViscosityOfAScene, WarnsOfALawThatDoesNotAct) {
   const Plan plan = make_plan(scene_with(folder, kGel + ", nu_min = 1e-5, nu_max = 1e-4}"));
   EXPECT_TRUE(warns(plan, "the law does not act"));
   // at the walls of this channel, 400 1/s, the law has 2.5e-5 m²/s
-  EXPECT_FALSE(warns(plan, "flow rate of a plane channel"));
+  EXPECT_FALSE(warns(plan, "flow rate of this channel"));
   const auto bounds = [&](const std::string& both) {
     return make_plan(scene_with(folder, kGel + ", " + both + "}"));
   };
   EXPECT_TRUE(warns(bounds("nu_min = 1e-5, nu_max = 3e-5"),
-                    "nu_min and nu_max change the flow rate of a plane channel by"));
+                    "nu_min and nu_max change the flow rate of this channel by"));
   EXPECT_TRUE(warns(bounds("nu_min = 1e-5, nu_max = 3e-5"), "take a larger nu_max"));
   EXPECT_TRUE(warns(bounds("nu_min = 1e-4, nu_max = 1e-2"), "take a smaller nu_min"));
 }
