@@ -259,6 +259,8 @@ void run(const Options& o, std::unique_ptr<protocol::Channel>& channel, protocol
   if (folder && !folder->set_aside().empty())
     log.block("kept         the earlier run of this folder is now " + folder->set_aside());
   log.block(describe(scene, plan));
+  if (o.run.until)
+    log.block(fmt::format("until        {:.6g} s: --until ends the run there\n", *o.run.until));
   if (!ranks.alone())
     log.block(fmt::format("ranks        {} × {} × {}{}\n", ranks.grid()[0], ranks.grid()[1],
                           ranks.grid()[2], work ? describe_blocks(ranks, *work) : ""));

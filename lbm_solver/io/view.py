@@ -15,8 +15,12 @@ import os
 import shutil
 import sys
 
-import paraview
-from paraview import simple as pv
+try:
+    import paraview
+    from paraview import simple as pv
+except ImportError:
+    sys.exit("view | error | this Python has no ParaView; start it as: pvpython view.py, or paraview --script=view.py "
+             "(Debian: apt install paraview); in plain Python, import bplbm reads the fields")
 
 PIXELS = 1100  # of the longer side
 GREEN, RED, GREY, DARK = [0.18, 0.56, 0.31], [0.84, 0.15, 0.16], [0.78, 0.76, 0.72], [0.2, 0.2, 0.2]

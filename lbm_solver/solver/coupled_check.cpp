@@ -46,8 +46,8 @@ void check_folder(const Scene& s, Plan& plan) {
     plan.warnings.push_back(fmt::format(
         "the scene's folder \"{}\" has a blank in its name: LIGGGHTS parts words there, and a "
         "script "
-        "that includes ${{scene_folder}}/… stops at \"Illegal include command\"; rename the "
-        "folder, or start in it",
+        "that includes ${{scene_folder}}/… stops at \"Illegal include command\"; rename every "
+        "folder of this path that has one",
         folder));
 }
 

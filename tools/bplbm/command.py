@@ -6,6 +6,7 @@ import sys
 
 from bplbm.options import scene_files
 from bplbm.project import BIN, CASES, ROOT, fluid_program
+from bplbm.toml_text import read_laid_over
 
 MODULES = {
     "new": ("bplbm.new_scene", "makes the folder of a new scene from a template"),
@@ -35,17 +36,37 @@ def mistake(text):
     return 2
 
 
+def note_on_partner(scene, files):
+    """What bplbm run would refuse: a script without [coupling], or [coupling] without a script. None where they agree, or
+    where lbm has to complain."""
+    try:
+        is_coupled = "coupling" in read_laid_over(files)
+    except (OSError, ValueError):
+        return None
+    script = scene.script("liggghts")
+    if scene.is_coupled and not is_coupled:
+        return (f"{scene.name} has no [coupling], but its folder has {script.name}, which bplbm run starts and lbm then refuses; add "
+                "[coupling] and [particles] to the scene, or rename the script for a fluid alone")
+    if is_coupled and not scene.is_coupled:
+        return (f"{scene.name} has [coupling], but its folder has no {script.name}; write one, which may be empty where "
+                "--engine-command names a program of your own")
+    return None
+
+
 def check(words):
     """lbm check of a scene and its overlays, chosen as with bplbm run. Ends the process."""
-    from bplbm.options import arguments, fail
+    from bplbm.options import arguments, fail, one_value
     if not words or words[0] in ("-h", "--help"):
         print("usage: bplbm check SCENE [--set NAME] [--variant NAME] [--KEY VALUE] [--overlay FILE]\n" + OWN["check"])
         return 0
     args = arguments(words)
     if not args.scene:
         fail("which scene? bplbm run --list shows them")
+    one_value(args, "bplbm check")
     if args.scene.is_solid_alone:
         fail(f"{args.scene.name} has no fluid: there is nothing that lbm could check")
+    if note := note_on_partner(args.scene, scene_files(args)):
+        print(f"check | note | {note}", file=sys.stderr, flush=True)
     os.execv(fluid_program(), [str(fluid_program()), "check", *scene_files(args)])
 
 

@@ -29,6 +29,21 @@ def rows(run):
     return shown
 
 
+def headings(runs):
+    """What each column is: set and variant, with the scene where there are several, or folders where these do not tell."""
+    several = len({r.summary["scene"] for r in runs}) > 1
+    names = [" ".join(w for w in (r.summary["scene"] if several else "", r.summary["set"], r.summary["variant"]) if w) for r in runs]
+    return names if len(set(names)) == len(names) else [str(r.folder) for r in runs]
+
+
+def notes(runs):
+    """What to know before one compares: that scenes differ, that a run was cut short."""
+    names = sorted({r.summary["scene"] for r in runs})
+    mixed = [f"these are runs of different scenes, {', '.join(names)}: numbers of the same name may mean different things"]
+    return (mixed if len(names) > 1 else []) + [f"{r.folder}: not judged: {r.summary['not_judged']}" for r in runs
+                                                if "not_judged" in r.summary]
+
+
 def parted(run, other):
     """Time at which two runs' particles differ by more than ALIKE of the box or of the largest speed, and the
     difference then; (None, largest difference) if never."""
@@ -67,7 +82,9 @@ def main():
                   file=sys.stderr)
             return 2
     first = rows(runs[0])
-    print("| |" + "".join(f" {r.summary['set']} {r.summary['variant']} |" for r in runs))
+    for note in notes(runs):
+        print(f"compare | note | {note}", file=sys.stderr)
+    print("| |" + "".join(f" {heading} |" for heading in headings(runs)))
     print("|---|" + "---|" * len(runs))
     for name, unit in first:
         line = f"| {name}{'' if unit == '1' else ' [' + unit + ']'} | {first[name, unit]:.4g} |"

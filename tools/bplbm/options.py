@@ -20,10 +20,10 @@ def fail(text, code=BAD_INPUT):
     sys.exit(code)
 
 
-def list_scenes():
-    for name in scenes():
-        scene = find(name)
-        print(f"{name:20} {scene.heading()}")
+def list_scenes(only=None):
+    """Prints all scenes of cases/, or one, with their choices."""
+    for scene in [only] if only else map(find, scenes()):
+        print(f"{scene.name:20} {scene.heading()}")
         own = "".join(f"; --{key} {'|'.join(values)}|all" for key, values in scene.options().items())
         print(f"{'':20} sets: {', '.join(scene.sets())}; variants: {', '.join(scene.variants()) or '-'}{own}")
 
@@ -53,7 +53,7 @@ class Parser(argparse.ArgumentParser):
 def parser():
     p = Parser(prog=tool("run"), description="Runs a scene and draws its pictures.", allow_abbrev=False)
     p.add_argument("scene", nargs="?", help="name of a folder in cases/, or the path of a scene's folder or scene.toml")
-    p.add_argument("--list", action="store_true", help="scenes with their sets and variants")
+    p.add_argument("--list", action="store_true", help="scenes with their sets and variants, or those of SCENE")
     p.add_argument("--set", default="resolved", help="parameter set: resolved, literal, fine")
     p.add_argument("--variant", default="", help="overlay variant-NAME.toml of the scene")
     p.add_argument("--overlay", action="append", default=[], metavar="FILE",
@@ -161,8 +161,16 @@ def own_choices(scene, words):
                  + "".join(f", and --{k} {'|'.join(v)}|all" for k, v in known.items()))
         if value != "all" and value not in known[key[2:]]:
             fail(f"{key} of {scene.name} is one of: {', '.join(known[key[2:]])}, all")
+        if key[2:] in dict(chosen):
+            fail(f"{key} is given twice; give one value of it, or all")
         chosen.append((key[2:], value))
     return chosen
+
+
+def one_value(args, who):
+    """Refuses `all` where a tool takes one value of a choice."""
+    if key := next((key for key, value in args.own if value == "all"), None):
+        fail(f"--{key} all: {who} takes one value of it: {', '.join(args.scene.options()[key])}")
 
 
 def label(args):

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import shlex
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]  # of the checkout, or PREFIX/share/bplbm
 INSTALLED = not (ROOT / "CMakeLists.txt").exists()
@@ -25,6 +26,13 @@ def home():
 def tool(name):
     """How a user calls a command: tools/run, or bplbm run."""
     return f"bplbm {name}" if INSTALLED else f"tools/{name}"
+
+
+def repeated(name, words):
+    """Shell commands that call a tool again with some words, from where it was called."""
+    here = pathlib.Path.cwd()
+    command = tool(name) if INSTALLED or here == ROOT else shlex.quote(str(ROOT / "tools" / name))
+    return f"cd {shlex.quote(str(here))}\n{command} {shlex.join(words)}"
 
 
 def missing_cpu_features():

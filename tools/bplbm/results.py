@@ -73,8 +73,9 @@ class Run:
 
     def __repr__(self):
         s = self.summary
-        passed = f", {sum(r['pass'] for r in self.results)} of {len(self.results)} results pass" if self.results else ""
-        return f"Run of {s['scene']}: {s['steps']} steps, {s['physical_seconds']:.6g} s{passed} ({self.folder})"
+        passed = sum(r["pass"] is True for r in self.results)
+        judged = f"not judged: {s['not_judged']}" if "not_judged" in s else f"{passed} of {len(self.results)} results pass"
+        return f"Run of {s['scene']}: {s['steps']} steps, {s['physical_seconds']:.6g} s{', ' + judged if self.results else ''} ({self.folder})"
 
     def frames(self):
         """Times and names of the field frames."""

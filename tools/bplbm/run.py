@@ -5,6 +5,7 @@ Called by tools/run, which has built the programs before. Exit codes: 0 ok, 1 fa
 """
 
 import argparse
+import itertools
 import json
 import os
 import re
@@ -14,7 +15,7 @@ import subprocess
 import sys
 import time
 
-from bplbm import output_folder, placement, solid_alone
+from bplbm import blanks, early_end, output_folder, placement, solid_alone
 from bplbm.logs import warning_lines
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
@@ -212,39 +213,43 @@ def with_unit(value, unit):
 
 
 def judge(out):
-    """Prints the results and quantities of summary.json. Returns whether all results are within their tolerance."""
+    """Prints the results and quantities of summary.json. Returns whether all that were judged are within their tolerance."""
     summary = json.loads((out / "summary.json").read_text())
     for r in summary["results"]:
+        if "not_judged" in summary:
+            print(f"run | not judged | {r['name']} = {with_unit(r['value'], r['unit'])}: {summary['not_judged']}")
+            continue
         verdict = colored("pass", 32) if r["pass"] else colored("MISS", "1;31")
         print(f"run | {verdict} | {r['name']} = {with_unit(r['value'], r['unit'])}, reference {with_unit(r['reference'], r['unit'])} "
               f"({r['source']}), error {100 * r['error']:+.2f} %, tolerance {100 * r['tolerance']:.2g} %")
     for q in summary.get("quantities", []):
         print(f"run | told | {q['name']} = {with_unit(q['value'], q['unit'])}")
-    return all(r["pass"] for r in summary["results"])
+    return "not_judged" in summary or all(r["pass"] for r in summary["results"])
 
 
 def comparison_runs(args):
-    """Options of the runs beside the main one: the other values of a choice that is `all`, or the
-    lines of the scene's study.txt."""
+    """Options of the runs beside the main one: the other values of a choice that is `all`, of several all combinations, or
+    the lines of the scene's study.txt."""
     plan = args.scene.folder / "study.txt"
-    for i, (key, value) in enumerate(args.own):
-        if value == "all":
-            first, *others = args.scene.options()[key]
-            args.own[i] = (key, first)
-            return [["--" + key, other] for other in others]
+    if keys := [key for key, value in args.own if value == "all"]:
+        first, *others = itertools.product(*(args.scene.options()[key] for key in keys))
+        args.own = list({**dict(args.own), **dict(zip(keys, first, strict=True))}.items())
+        return [[word for key, value in zip(keys, values, strict=True) for word in ("--" + key, value)] for values in others]
     if args.no_study or args.set != "resolved" or label(args) or args.until is not None or not plan.exists():
         return []
     return [line.split() for line in plan.read_text().splitlines() if line.strip() and not line.startswith("#")]
 
 
 def study(args, runs, out):
-    """Runs them, each in a folder of its own: --variant trt in study/variant-trt."""
+    """Runs them, each in a folder of its own: --variant trt in study/variant-trt. What they do not say is as in the main
+    run."""
     for words in runs:
         other = arguments([str(args.scene.folder), *words])
         folder = out / "study" / "-".join(words).removeprefix("--").replace("---", "_")
         restart = args.restart if (folder / f"{args.restart}.h5").exists() else None
-        run = argparse.Namespace(**{**vars(args), "set": other.set, "variant": other.variant, "own": other.own,
-                                    "record": None, "restart": restart, "force": not restart})
+        run = argparse.Namespace(**{**vars(args), "set": other.set if "--set" in words else args.set,
+                                    "variant": other.variant or args.variant,
+                                    "own": list({**dict(args.own), **dict(other.own)}.items()), "record": None, "restart": restart, "force": not restart})
         hold = take_folder(run, folder)
         code = run_job(run, folder)
         del hold
@@ -284,14 +289,23 @@ def check_programs(args):
         fail(f"mpirun not found; {'install openmpi-bin' if INSTALLED else 'run tools/install'}")
 
 
+def check_blanks(args, out):
+    """Refuses folders with a blank in their name where the script of the solid needs them."""
+    scene = args.scene
+    if (scene.is_coupled or scene.is_solid_alone) and args.engine in ("liggghts", "lammps") and not args.engine_command:
+        if why := blanks.refusal(scene.script(args.engine), scene.folder, out, args.restart):
+            fail(why)
+
+
 def main():
     args = arguments(sys.argv[1:])
     if args.list:
-        list_scenes()
+        list_scenes(args.scene)
         return 0
     if not args.scene:
         fail(f"which scene? {tool('run')} --list shows them")
     out = output_folder.resolved(args.out or out_folder(args))
+    check_blanks(args, out)
     if args.look:
         take_folder(args, out, look=True)
         print(*programs(args))
@@ -327,6 +341,7 @@ def go(args, others, out):
         return code
     try:
         draw(args.scene, out, args.until is not None)
+        early_end.mark(out, scene_files(args))
     finally:  # a plot.py that fails leaves the page, which needs none
         if not args.no_page and not args.scene.is_solid_alone:
             make_page(args, out)

@@ -114,6 +114,12 @@ def results_of(folder):
             "mass drift": summary["mass_drift"], "wall time [s]": summary["wall_seconds"]}
 
 
+def not_judged(folder):
+    """Why the results of a finished run count for nothing, as after --until; empty where they count."""
+    why = json.loads((folder / "summary.json").read_text()).get("not_judged")
+    return f"not judged: {why}" if why else ""
+
+
 class Runner:
     """Starts the runs, some at a time, and ends them in good order at Ctrl-C."""
 
@@ -142,7 +148,7 @@ class Runner:
             return
         text = (folder / "logs" / f"{name}.log").read_text(errors="replace")
         row = {"values": chosen, "made_of": hashed, "code": code, "seconds": round(time.monotonic() - start, 2),
-               "reason": "" if code in ANSWERED else reason_of(text)[:400],
+               "reason": not_judged(folder / name) if code in ANSWERED else reason_of(text)[:400],
                "results": results_of(folder / name) if code in ANSWERED else {}}
         self.table.add(name, row)
         reason = f" | {row['reason']}" if row["reason"] else ""

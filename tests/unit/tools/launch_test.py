@@ -15,9 +15,9 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from bplbm import mpi_job, output_folder, placement, result, run, solid_alone  # noqa: E402
+from bplbm import command, mpi_job, output_folder, placement, result, run, solid_alone  # noqa: E402
 from bplbm.options import arguments, scene_files  # noqa: E402
-from bplbm.scenes import find, scenes  # noqa: E402
+from bplbm.scenes import Scene, find, scenes  # noqa: E402
 
 
 class Result(unittest.TestCase):
@@ -59,6 +59,13 @@ class Launch(unittest.TestCase):
         code, text = self.run_main("settling_disc", "--no-study", value=1.2)
         self.assertEqual(code, 4)
         self.assertIn("MISS", text)
+
+    def test_a_run_cut_short_is_not_judged(self):
+        with mock.patch.object(run.early_end, "early_end", lambda *_: "ended at 0.1 of 2 s"):
+            code, text = self.run_main("settling_disc", "--no-study", value=1.2)
+        self.assertEqual(code, 0)
+        self.assertIn("run | not judged | number = 1.2: ended at 0.1 of 2 s\n", text)
+        self.assertNotIn("MISS", text)
 
     def test_results_and_quantities_are_printed_with_their_units_and_without_colour_in_a_file(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -120,6 +127,50 @@ class Launch(unittest.TestCase):
         args = arguments(["disc_migration", "--start", "all"])
         self.assertEqual(run.comparison_runs(args), [["--start", v] for v in "6789"])
         self.assertEqual(args.own, [("start", "5")])
+
+    def test_several_choices_with_all_are_all_combinations(self):
+        args = arguments(["disc_migration", "--start", "all", "--initial", "all", "--set", "fine"])
+        runs = run.comparison_runs(args)
+        self.assertEqual(args.own, [("start", "5"), ("initial", "developed")])
+        self.assertEqual((len(runs), runs[0], runs[-1]), (9, ["--start", "5", "--initial", "rest"], ["--start", "9", "--initial", "rest"]))
+        for path in scene_files(args):
+            self.assertTrue(pathlib.Path(path).is_file(), path)
+
+    def test_what_a_comparison_does_not_vary_is_as_in_the_main_run(self):
+        args, made = arguments(["disc_migration", "--start", "all", "--initial", "rest", "--set", "fine"]), []
+        runs = run.comparison_runs(args)
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(run, "take_folder"), \
+                mock.patch.object(run, "run_job", lambda args, out: made.append((args, out.name))):
+            run.study(args, runs, pathlib.Path(folder))
+        self.assertEqual([name for _, name in made], ["start-6", "start-7", "start-8", "start-9"])
+        self.assertEqual([pathlib.Path(f).name for f in scene_files(made[0][0])],
+                         ["scene.toml", "fine.toml", "start-6.toml", "initial-rest.toml"])
+
+    def test_a_choice_given_twice_or_all_of_one_where_one_counts_is_refused(self):
+        self.assertIn("--start is given twice", self.run_main("disc_migration", "--start", "5", "--start", "6")[1])
+        text = io.StringIO()
+        with contextlib.redirect_stderr(text), self.assertRaises(SystemExit) as end:
+            command.check(["disc_migration", "--start", "all"])
+        self.assertEqual(end.exception.code, 2)
+        self.assertIn("--start all: bplbm check takes one value of it: 5, 6, 7, 8, 9", text.getvalue())
+
+    def test_one_scene_is_listed_by_its_path(self):
+        code, text = self.run_main(str(ROOT / "cases" / "disc_migration"), "--list")
+        self.assertEqual((code, text.count("\n"), text[:14]), (0, 2, "disc_migration"))
+        self.assertIn("no scene 'nope'", self.run_main("nope", "--list")[1])
+
+    def test_check_knows_what_run_would_refuse(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Scene(pathlib.Path(folder))
+            for table, script, words in (("[coupling]", True, None), ("", False, None), ("", True, "has no [coupling], but its folder has"),
+                                         ("[coupling]", False, "has [coupling], but its folder has no in.liggghts"), ("[", True, None)):
+                scene.file.write_text(table)
+                scene.script("liggghts").touch() if script else scene.script("liggghts").unlink(missing_ok=True)
+                note = command.note_on_partner(scene, [scene.file])
+                self.assertIn(words, note) if words else self.assertIsNone(note)
+        for name in scenes():
+            if not find(name).is_solid_alone:
+                self.assertIsNone(command.note_on_partner(find(name), [find(name).file]), name)
 
     def test_the_command_names_both_programs_by_absolute_path(self):
         args = mock.Mock(scene=find("settling_disc"), overlay=[], set="fine", variant="d10", own=[], engine="liggghts", engine_command=None,

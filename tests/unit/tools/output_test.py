@@ -6,6 +6,7 @@ import fcntl
 import io
 import json
 import pathlib
+import runpy
 import signal
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from bplbm import output_folder, run, scenes  # noqa: E402
+from bplbm import compare, output_folder, run, scenes  # noqa: E402
 from bplbm.output_folder import Refused  # noqa: E402
 
 
@@ -143,6 +144,41 @@ class Command(InFolder):
         for words in ("bare                 the title (no README.md)", "empty                the title", "full                 A full",
                       "broken               (no README.md)"):
             self.assertIn(words, text)
+
+    def test_a_blank_in_a_folder_that_the_script_names_is_refused(self):
+        """Only there: a scene or an output folder that the script does not name may have one."""
+        script = "# ${scene_folder}\ninclude ${scene_folder}/more.liggghts\n"
+        for name, text, more, out, words in (
+                ("a b/s", script, "", "out", "in.liggghts, line 2, names files in it; rename every folder of this path"),
+                ("a b/t", "run 1 # ${scene_folder}\n", "", "out", ""), ("u", script, "", "o ut", ""),
+                ("v", script, "dump x ${out_folder}/x\n", "o ut", "more.liggghts, line 1, names files in it; give --out a folder")):
+            scene = self.folder / name
+            scene.mkdir(parents=True)
+            (scene / "scene.toml").write_text("[fluid]\n[box]\nsize = [1.0, 1.0]\n")
+            (scene / "in.liggghts").write_text(text)
+            (scene / "more.liggghts").write_text(more)
+            code, said = self.main(str(scene), "--out", str(self.folder / out), "--look")
+            self.assertEqual(code, 2 if words else 0, said)
+            self.assertIn(words, said)
+            if words:
+                self.assertIn("has a blank in its name", said)
+
+    def test_columns_of_a_comparison_say_what_they_are(self):
+        def run_of(scene, variant, folder):
+            return mock.Mock(summary={"scene": scene, "set": "resolved", "variant": variant}, folder=folder)
+
+        for runs, heads in (([run_of("a", "", "o"), run_of("a", "trt", "p")], ["resolved", "resolved trt"]),
+                            ([run_of("a", "", "o"), run_of("b", "", "p")], ["a resolved", "b resolved"]),
+                            ([run_of("a", "", "out/a"), run_of("a", "", "out/a.1")], ["out/a", "out/a.1"])):
+            self.assertEqual(compare.headings(runs), heads)
+            self.assertEqual(any("these are runs of different scenes, a, b" in note for note in compare.notes(runs)), heads[0] == "a resolved")
+        runs[1].summary["not_judged"] = "ended at 0.1 of 60 s"
+        self.assertEqual(compare.notes(runs), ["out/a.1: not judged: ended at 0.1 of 60 s"])
+
+    def test_view_without_paraview_says_how_to_start_it(self):
+        with mock.patch.dict(sys.modules, {"paraview": None}), self.assertRaises(SystemExit) as end:
+            runpy.run_path(str(ROOT / "lbm_solver" / "io" / "view.py"))
+        self.assertIn("this Python has no ParaView; start it as: pvpython view.py", end.exception.code)
 
     def test_a_folder_that_vanishes_during_the_run(self):
         def vanish(_args, out):

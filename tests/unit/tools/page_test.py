@@ -23,6 +23,7 @@ from bplbm.page import flow, histories, picture  # noqa: E402
 from bplbm.page.failed import write_failed_page  # noqa: E402
 from bplbm.page.run import write_page  # noqa: E402
 from bplbm.quantities import default_quantities, of_particles  # noqa: E402
+from bplbm.reading import Table  # noqa: E402
 from bplbm.results import Run  # noqa: E402
 from bplbm.scenes import Scene  # noqa: E402
 
@@ -315,9 +316,14 @@ class Flow(Output):
             self.assertIn('data-kind="viscosity"', flow.animation(run, planes))
             self.assertEqual(run.fields[0].viscosity.unit, "m2/s")
 
-    def test_breaks_count_from_the_fluids_beginning(self):
-        run = self.write(2)
-        self.assertAlmostEqual(histories.settling_time(run), 0.04)  # 700 steps, of which 500 coupled
+    def test_breaks_lie_at_the_times_of_their_table(self):
+        run = self.write(2)  # whose solid had moved alone for 200 of its steps
+        for times, steps in (([0.06], [0, 0.06, 0.06, 0.1]), ([0.02, -0.01], [-0.01, -0.01, -0.01, 0.02, 0.02, 0.1])):
+            with mock.patch.object(histories, "line_chart") as drawn:
+                histories.of_breaks(Table({"time": np.array(times)}), run)
+            line, = drawn.call_args.args[0]
+            self.assertEqual(line.x.tolist(), steps)
+            self.assertEqual(line.y.tolist(), np.repeat(range(len(times) + 1), 2).tolist())
 
 
 class Quantities(unittest.TestCase):

@@ -6,8 +6,8 @@ import h5py
 import numpy as np
 
 from bplbm.mpi_job import reason_of
-from bplbm.page import flow, histories
-from bplbm.page.html import page, section
+from bplbm.page import flow, histories, sensors
+from bplbm.page.html import page, row, section
 from bplbm.page.run import how, said, warnings
 from bplbm.page.setup import setup
 from bplbm.reading import read_table
@@ -69,7 +69,8 @@ def write_failed_page(folder, scene, files, words, line, code):
                          f"<details><summary>all that was said</summary><pre>{html.escape(text)}</pre></details>"),
                  f'<div class="row"><div>{section("Set-up", attempt(setup, run, tables, scene.folder))}</div>'
                  f'<div style="flex:1;min-width:320px">{section("Flow until then", moving)}</div></div>',
-                 section("Histories until then", f'<div class="row">{"".join(attempt(histories.charts, run, planes))}</div>'),
+                 section("Histories until then", row(attempt(histories.charts, run, planes))),
+                 section("Sensors until then", row(attempt(sensors.charts, run))),
                  section("What was on", said(run)), section("Warnings and hints", warnings(run)),
                  section("How to repeat it", *how(run, tables, scene, words, line)),
                  scripts=["flow.js"] if moving else [])

@@ -1,10 +1,9 @@
 """Curves against time that every run has: of its particles, bonds, obstacles, points, and of the fluid as a whole."""
 
-import re
-
 import numpy as np
 
 from bplbm.page.chart import Line, line_chart
+from bplbm.page.sensors import felt
 from bplbm.reading import read_table
 
 FEW = 6  # particles that have a curve each
@@ -13,7 +12,8 @@ FEW = 6  # particles that have a curve each
 def charts(run, planes):
     """SVG charts of a Run. planes: those of its frames, with the speeds of the fluid."""
     found = []
-    for name, draw in (("probes", of_particles), ("breaks", of_breaks), ("obstacles", of_obstacles), ("points", of_points)):
+    for name, draw in (("probes", of_particles), ("breaks", of_breaks), ("obstacles", of_obstacles), ("points", of_points),
+                       ("flow", of_flow)):
         path = run.folder / f"{name}.csv"
         if path.is_file() and path.read_text().count("\n") > 2:
             found += draw(read_table(path), run)
@@ -70,23 +70,19 @@ def of_all(table):
     return drawn
 
 
-def settling_time(run):
-    """How long the solid had moved alone [s] when the fluid joined, from its log; zero without a log that says it."""
-    log = run.folder / "liggghts.log"
-    steps = re.findall(r"^ *(\d+) .*\nLoop time of", log.read_text(errors="replace"), re.M) if log.is_file() else []
-    substeps, interval = run.summary.get("substeps", 0), run.parameters.get("interval", 0.0)
-    if not steps or not substeps or not interval:
-        return 0.0
-    coupled = round(run.summary["physical_seconds"] / interval) * substeps
-    return max(0.0, (int(steps[-1]) - coupled) * interval / substeps)
-
-
 def of_breaks(table, run):
-    end = run.summary["physical_seconds"]
-    table["time"] = table["time"] - settling_time(run)
-    time = np.concatenate([[0.0], np.repeat(np.sort(table["time"]), 2), [end]])  # steps
-    count = np.concatenate([[0, 0], np.repeat(np.arange(1, len(table["time"]) + 1), 2)])
+    """Steps of the count. The times are those of the fluid: what broke before it came has negative ones."""
+    times = np.sort(table["time"])
+    time = np.concatenate([[min(0.0, *times[:1])], np.repeat(times, 2), [max(run.summary["physical_seconds"], *times[-1:])]])
+    count = np.concatenate([[0, 0], np.repeat(np.arange(1, len(times) + 1), 2)])
     return [line_chart([Line("", time, count[:len(time)])], "time [s]", "broken bonds")]
+
+
+def of_flow(table, run):
+    """The flow that a scene holds, and what drives it."""
+    drive = next(column for column in table if column not in ("time", "flow", "wanted"))
+    return [line_chart([Line(name, table["time"], table[name]) for name in ("flow", "wanted")], "time [s]", f"flow that is held [{table.units['flow']}]"),
+            line_chart([Line("", table["time"], table[drive])], "time [s]", f"its {drive.replace('_', ' ')} [{table.units[drive]}]")]
 
 
 def of_obstacles(table, run):
@@ -105,5 +101,6 @@ def of_points(table, run):
     places = np.unique(np.column_stack([table[a] for a in axes]), axis=0)[:FEW]
     here = lambda place: np.all([table[a] == v for a, v in zip(axes, place, strict=True)], axis=0)  # noqa: E731
     chosen = {", ".join(f"{v:.4g}" for v in place): table.where(here(place)) for place in places}
+    velocities = [(column, f"velocity in {column[-1]} [m/s]") for column in felt(table, ["ux", "uy", "uz"])]
     return [line_chart([Line(f"at {name} m", t["time"], t[column]) for name, t in chosen.items()], "time [s]", label)
-            for column, label in (("pressure", "pressure [Pa]"), ("ux", "velocity in x [m/s]"))]
+            for column, label in [("pressure", "pressure [Pa]"), *velocities]]

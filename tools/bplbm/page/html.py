@@ -53,6 +53,11 @@ def section(title, *parts):
     return f"<h2>{html.escape(title)}</h2>{inner}" if inner else ""
 
 
+def row(parts):
+    """Parts side by side; nothing where there is none."""
+    return f'<div class="row">{"".join(parts)}</div>' if parts else ""
+
+
 def own(name):
     """Text of a style sheet or script beside this file."""
     return (HERE / name).read_text()

@@ -11,11 +11,11 @@ import time
 
 from bplbm.costs import solid_seconds
 from bplbm.logs import warning_lines
-from bplbm.page import flow, histories
-from bplbm.page.html import Cell, page, section, table
+from bplbm.page import flow, histories, sensors
+from bplbm.page.html import Cell, page, row, section, table
 from bplbm.page.picture import data_url
 from bplbm.page.setup import setup
-from bplbm.project import ROOT, tool
+from bplbm.project import INSTALLED, ROOT, repeated
 from bplbm.quantities import default_quantities
 from bplbm.results import Run
 from bplbm.toml_text import read_laid_over, toml
@@ -31,10 +31,12 @@ def named_unit(number):
     return "–" if number["unit"] in ("1", "") else number["unit"]
 
 
-def judged(r):
-    """The row of a result."""
+def judged(r, not_judged=""):
+    """The row of a result; not_judged: why it counts for nothing."""
     error = f"{100 * r['error']:+.2f} %"
     verdict = '<span class="good">pass</span>' if r["pass"] else '<span class="bad">miss</span>'
+    if not_judged:
+        verdict = f'<span class="note">not judged: {html.escape(not_judged)}</span>'
     return [r["name"], r["value"], named_unit(r), r["reference"],
             Cell("0.00 %" if error == "-0.00 %" else error, r["error"], "n"), Cell(f"{100 * r['tolerance']:.2g} %", r["tolerance"], "n"), Cell(verdict, r["pass"]), r["source"]]
 
@@ -43,7 +45,7 @@ def results(run):
     """What was judged, and what was only measured."""
     told = list({q["name"]: q for q in [*default_quantities(run), *run.quantities]}.values())
     heads = ["result", "value", "unit", "reference", "error", "tolerance", "", "source"]
-    return (table(heads, list(map(judged, run.results))) if run.results else "", "<p></p>" if run.results and told else "",
+    return (table(heads, [judged(r, run.summary.get("not_judged", "")) for r in run.results]) if run.results else "", "<p></p>" if run.results and told else "",
             table(["quantity", "value", "unit"], [[q["name"], q["value"], named_unit(q)] for q in told]) if told else "")
 
 
@@ -95,12 +97,15 @@ def pictures(run):
 
 
 def commit():
+    """That of the checkout; nothing of an installed tree, whose version says what it is."""
+    if INSTALLED:
+        return ""
     try:
         said = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True,
                               timeout=5, check=False).stdout.strip()
     except (OSError, subprocess.TimeoutExpired):
         said = ""
-    return said or "unknown"
+    return f"commit {said}" if said else ""
 
 
 def machine():
@@ -119,8 +124,8 @@ def how(run, tables, scene, words, line):
     """How to run it again."""
     versions = ", ".join(f"{name} {version}" for name, version in run.summary["versions"].items())
     script = scene.script("liggghts")
-    return (f"<pre>{tool('run')} {html.escape(shlex.join(words))}</pre>"
-            f'<p class="soft">{html.escape(versions)} · commit {html.escape(commit())} · {html.escape(machine())}</p>',
+    return (f"<pre>{html.escape(repeated('run', words))}</pre>"
+            f'<p class="soft">{html.escape(" · ".join(w for w in (versions, commit(), machine()) if w))}</p>',
             details("the command of the job", shlex.join(line)), details("scene.toml with its overlays", toml(tables)),
             details(script.name, script.read_text(errors="replace")) if script.is_file() else "")
 
@@ -144,7 +149,8 @@ def write_page(folder, scene, files, words, line):
                 section("Results", *results(run)),
                 f'<div class="row"><div>{section("Set-up", setup(run, tables, scene.folder))}</div>'
                 f'<div style="flex:1;min-width:320px">{section("Flow", moving)}</div></div>',
-                section("Histories", f'<div class="row">{"".join(histories.charts(run, planes))}</div>'),
+                section("Histories", row(histories.charts(run, planes))),
+                section("Sensors", row(sensors.charts(run))), section("Averages", *sensors.averages(run)),
                 section("Pictures of the scene", pictures(run)),
                 section("Where the time went", costs(run)), section("What was on", said(run)),
                 section("Warnings and hints", warnings(run)),

@@ -2,13 +2,12 @@
 
 import csv
 import html
-import shlex
 
 import numpy as np
 
 from bplbm.page.chart import Line, line_chart
 from bplbm.page.html import Cell, page, section, table
-from bplbm.project import tool
+from bplbm.project import repeated
 
 COSTS = ("physical time [s]", "largest Ma", "mass drift", "wall time [s]")
 STATUS = {0: ("ok", "good"), 4: ("out of tolerance", "note")}
@@ -101,7 +100,7 @@ def write_page(folder, scene, variant, names, rows, words):
                 'the same as a table: <a href="sweep.csv">sweep.csv</a></p>',
                 section("Curves", charts(names, rows)),
                 section("Runs", table([*names, "status", *columns, "run", "reason"], lines, sortable=True)),
-                section("How to repeat it", f"<pre>{tool('sweep')} {html.escape(shlex.join(words))}</pre>"))
+                section("How to repeat it", f"<pre>{html.escape(repeated('sweep', words))}</pre>"))
     path = folder / "index.html"
     path.write_text(text)
     return path
