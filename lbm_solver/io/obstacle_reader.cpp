@@ -197,8 +197,11 @@ GreyImage cut_out(TableReader& t, GreyImage image, Cell3 from, Cell3 to) {
     part.size[k] = to[k] - from[k];
     if (part.size[k] < 1 || to[k] > image.size[k])
       t.fail("image",
-             fmt::format("has {} × {} × {} voxels: nothing lies between {} and {} in {}",
-                         image.size[0], image.size[1], image.size[2], from[k], to[k], "xyz"[k]),
+             fmt::format(
+                 "has {} × {} × {} voxels: {} {} and {} in {}", image.size[0], image.size[1],
+                 image.size[2],
+                 part.size[k] < 1 ? "nothing lies between" : "they do not fill what is between",
+                 from[k], to[k], "xyz"[k]),
              "correct cut_from and cut_to, in voxels");
   }
   if (part.size == image.size) return image;
@@ -347,7 +350,8 @@ void read_its_motion(TableReader& t, const std::string& scene_file, const BoxSce
            "draw it as a mesh, or leave motion out");
   if (o.mesh && o.mesh->hollow)
     t.fail("hollow", "stands beside motion: the solid would reach to the sides of the box",
-           "give the surface a thickness, or both surfaces of the wall");
+           "take a mesh that has both surfaces of the wall, or a mesh of one surface with a "
+           "thickness");
   if (!o.spin.isZero(0.0))
     t.fail("spin", "stands beside motion", "give motion = \"rotation\" and angular_velocity");
   if (o.block()) {

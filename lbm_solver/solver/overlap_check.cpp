@@ -114,13 +114,13 @@ std::string overlap_text(const Scene& s, const Plan& plan, const std::vector<Geo
   if (!overlap) return {};
   if (a.block() || b.block())
     return fmt::format(
-        "the {}. obstacle lies partly in the {}., and the {}. is a block: the load on cells of "
+        "the {}. obstacle overlaps the {}., and the {}. is a block: the load on cells of "
         "both "
         "counts for both, and the sum of their loads is too large; let one end where the other "
         "begins, or draw them as one mesh",
         later + 1, earlier + 1, (a.block() ? later : earlier) + 1);
   return fmt::format(
-      "the {}. obstacle lies partly in the {}.: the load on cells that both cover is shared "
+      "the {}. obstacle overlaps the {}.: the load on cells that both cover is shared "
       "between them",
       later + 1, earlier + 1);
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "lbm_solver/solver/work.h"
+#include "tests/performance/usage.h"
 
 namespace {
 
@@ -123,6 +124,7 @@ void measure(const Domain& domain, const Array& array, double speed, int ranks) 
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (bench::asks_for_help(argc, argv, "mpirun -np 2 balance_benchmark")) return 0;
   int level = 0, ranks = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);

@@ -13,6 +13,7 @@
 #include "protocol/transport/mpi_channel.h"
 #include "protocol/wire/routing.h"
 #include "protocol/wire/session.h"
+#include "tests/performance/usage.h"
 
 namespace {
 
@@ -103,6 +104,9 @@ void solid(Channel& channel, int rank, int ranks, int particles, int intervals) 
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (bench::asks_for_help(argc, argv,
+                           "mpirun -np 2 exchange_benchmark, or any even number of ranks"))
+    return 0;
   MPI_Init(&argc, &argv);
   int rank = 0, size = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "lbm_solver/field/halo_exchange.h"
+#include "tests/performance/usage.h"
 
 namespace {
 
@@ -38,6 +39,7 @@ void measure(int n, int axis, int ranks) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (bench::asks_for_help(argc, argv, "mpirun -np 2 halo_benchmark")) return 0;
   MPI_Init(&argc, &argv);
   int ranks = 0;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/performance/usage.h"
+
 namespace {
 
 struct Ranks {
@@ -75,6 +77,7 @@ void parallel(const std::string& path, const std::vector<double>& mine, const Ra
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (bench::asks_for_help(argc, argv, "mpirun -np 2 output_benchmark FOLDER")) return 0;
   MPI_Init(&argc, &argv);
   Ranks ranks;
   MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank);

@@ -250,10 +250,9 @@ TEST_F(ObstacleFiles, ThatLieInEachOtherAreNamed) {
     return warnings_of(read(3, ball + "[[obstacle]]\n" + obstacle));
   };
   const std::string block = "from = [0.005, 0.0, 0.0]\nto = [0.008, 0.008, 0.008]\n";
-  EXPECT_NE(
-      said(block).find("the 2. obstacle lies partly in the 1., and the 2. is a block: the load "
-                       "on cells of both counts for both"),
-      std::string::npos);
+  EXPECT_NE(said(block).find("the 2. obstacle overlaps the 1., and the 2. is a block: the load "
+                             "on cells of both counts for both"),
+            std::string::npos);
   EXPECT_EQ(said("from = [0.007, 0.0, 0.0]\nto = [0.008, 0.008, 0.008]\n"), "");  // touches
   EXPECT_NE(
       said("centre = [0.006, 0.004, 0.004]\ndiameter = 0.004\n").find("partly in the 1.: the"),

@@ -216,7 +216,7 @@ TEST(Scene, WhatWouldRunButNotAsItWasMeantIsWarnedOf) {
   EXPECT_TRUE(has(obstacles(ball + "0.0003"), "[0.01, 0.02] is 2.4 cells wide"));
   EXPECT_EQ(obstacles(ball + "0.001"), "");
   EXPECT_TRUE(has(obstacles(ball + "0.004\n[[obstacle]]\ncentre = [0.012, 0.02]\ndiameter = 0.004"),
-                  "the 2. obstacle lies partly in the 1."));
+                  "the 2. obstacle overlaps the 1."));
   EXPECT_EQ(obstacles(ball + "0.004\n[[obstacle]]\ncentre = [0.014, 0.02]\ndiameter = 0.004"), "");
 }
 
