@@ -114,12 +114,11 @@ def made_of(args, overlay):
 
 def results_of(folder):
     """Results, quantities and costs of a finished run: dict "name [unit]" -> number."""
-    from bplbm.quantities import default_quantities
     from bplbm.results import Run
     run = Run(folder)
     summary = run.summary
     numbers = {}
-    for number in [*summary["results"], *summary.get("quantities", []), *default_quantities(run)]:
+    for number in [*summary["results"], *run.quantities]:
         unit = "" if number["unit"] == "1" else f" [{number['unit']}]"
         numbers.setdefault(number["name"] + unit, number["value"])
     return {**numbers, "physical time [s]": summary["physical_seconds"], "largest Ma": summary["ma_max"],
