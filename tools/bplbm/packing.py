@@ -217,13 +217,14 @@ def pack_clumps(args, sizes, random):
         fail(str(error))
 
 
-MADE_BY = "; made by tools/make_packing"
+MADE_BY = f"; made by {tool('make_packing')}"
+OURS = ("; made by tools/make_packing", "; made by bplbm make_packing")
 OF_NEW = ("; made by tools/new.", "; made by bplbm new.")  # the loose grains of a new scene
 
 
 def words_of(line):
     """The command line that the first line of a packing holds."""
-    return line.partition(MADE_BY)[2].strip()
+    return next((line.partition(ours)[2].strip() for ours in OURS if ours in line), "")
 
 
 def own_words():
@@ -242,7 +243,7 @@ def first_line(path):
 def refuse_others(args):
     """A name costs no file that is no packing, and no other packing without --force. The same command makes the same one."""
     script, table = (pathlib.Path(args.out + ending) for ending in (".liggghts", ".csv"))
-    for path, ours in ((script, (MADE_BY, *OF_NEW)), (table, ("x,y,",))):
+    for path, ours in ((script, (*OURS, *OF_NEW)), (table, ("x,y,",))):
         if path.exists() and not any(word in first_line(path) for word in ours):
             fail(f"{path} is there and no packing of this tool: it is not overwritten; give another --out, or remove it")
     if args.force:

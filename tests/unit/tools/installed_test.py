@@ -89,6 +89,9 @@ class Installed(unittest.TestCase):
                               capture_output=True, timeout=100, check=False)
         self.assertIn("pass | grains at the start = 60", done.stdout, done.stdout + done.stderr)
         self.assertTrue((self.folder / "out" / "stream" / "stream.png").exists())
+        self.assertIn("the one here is named by its path, cases/stream", self.bplbm("run", "stream").stderr)
+        (self.folder / "cases" / "common").rename(self.folder / "elsewhere")
+        self.assertIn("Cannot open input script", self.bplbm("run", "cases/stream", "--until", "0.002", "--no-page").stderr)
 
     def test_keys_variables_and_places_are_printed(self):
         self.assertIn("| `numerics.cell` |", self.succeeds("keys"))
