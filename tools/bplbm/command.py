@@ -99,6 +99,11 @@ def command_line():
     except KeyboardInterrupt:
         print("bplbm | stopped: interrupted by Ctrl-C", file=sys.stderr)
         sys.exit(1)
+    except BrokenPipeError:  # of `bplbm keys | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        sys.exit(1)
+    except PermissionError as error:
+        sys.exit(mistake(f"{error.filename}: {error.strerror}; choose another folder"))
 
 
 if __name__ == "__main__":

@@ -45,14 +45,14 @@ class Run:
         self.parameters = self.summary["parameters"]
 
     def probes(self, particle=1):
-        """Columns of probes.csv of one particle: dict name -> array, SI units. Throws LookupError where it has no such one."""
+        """Columns of probes.csv of one particle: a Table, name -> array, SI units in `.units`. Throws LookupError where it has no such one."""
         table = read_table(self.file("probes.csv"))
         mine = table["id"] == particle
         if not mine.any():
             ids = np.unique(table["id"]).astype(int)
             there = f"they are {ids[0]} … {ids[-1]}" if len(ids) else "there are none"
             raise LookupError(f"{self.folder / 'probes.csv'} has no particle {particle}; {there}")
-        return {name: column[mine] for name, column in table.items()}
+        return table.where(mine)
 
     def table(self, name):
         """probes, points, obstacles, breaks or sensor-NAME (any CSV file of the folder): a pandas DataFrame where pandas is

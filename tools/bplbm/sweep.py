@@ -20,6 +20,7 @@ import subprocess
 import sys
 import threading
 import time
+import tomllib
 from dataclasses import dataclass
 
 from bplbm import output_folder
@@ -32,6 +33,7 @@ from bplbm.sweep_values import Mistake, Sweep, axis, look_up, path_of
 from bplbm.toml_text import read_laid_over, toml
 
 OUT_OF_TOLERANCE = 4
+MOST_LETTERS = 200  # of a file's name
 WAYS = {0: "ok", 1: "fault", 2: "refused", 3: "numerics", OUT_OF_TOLERANCE: "out of tolerance"}
 ANSWERED = (0, OUT_OF_TOLERANCE)  # runs that came to their end
 HELP_ON_MORE = f"Other options are those of {tool('run')}, as --variant, --until or --threads, and reach every run."
@@ -101,12 +103,21 @@ class Table:
         return row is not None and row["made_of"] == made_of and (row["code"] in ANSWERED or not retry)
 
 
+def named_files(tables, folder):
+    """Files of a scene's folder that its tables name: meshes, images, tables in time."""
+    if isinstance(tables, str):
+        return [folder / tables] if 0 < len(tables) < MOST_LETTERS and (folder / tables).is_file() else []
+    parts = tables.values() if isinstance(tables, dict) else tables if isinstance(tables, list) else ()
+    return [path for part in parts for path in named_files(part, folder)]
+
+
 def made_of(args, overlay):
-    """A hash of all that a run follows from: scene, overlays, scripts, and the other options."""
+    """A hash of all that a run follows from: scene, overlays, files that they name, scripts, and the other options."""
     digest = hashlib.sha256(overlay.encode())
-    folder = args.scene.folder
-    for path in sorted({*map(pathlib.Path, scene_files(args)), *folder.glob("*.liggghts"), *folder.glob("in.*"),
-                        *folder.glob("plot.py")}):
+    folder, files = args.scene.folder, scene_files(args)
+    named = {*named_files(read_laid_over(files), folder), *named_files(tomllib.loads(overlay), folder)}
+    for path in sorted({*map(pathlib.Path, files), *named, *folder.glob("*.liggghts"), *folder.glob("*/*.liggghts"),
+                        *folder.parent.glob("common/*.liggghts"), *folder.glob("in.*"), *folder.glob("plot.py")}):
         digest.update(path.read_bytes())
     digest.update(repr((args.engine_command or args.engine, args.until)).encode())
     return digest.hexdigest()[:16]

@@ -160,6 +160,7 @@ class Folder(unittest.TestCase):
             with self.assertRaisesRegex(LookupError, "written from 0 to 1 s"):
                 self.run_.fields.at(time)
         self.assertEqual(self.run_.probes(3)["x"].tolist(), [0.3, 0.3])
+        self.assertEqual(self.run_.probes(3).units["vx"], "m/s")
         with self.assertRaisesRegex(LookupError, "has no particle 7777; they are 3 … 4"):
             self.run_.probes(7777)
 

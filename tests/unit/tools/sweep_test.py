@@ -159,9 +159,14 @@ class Command(unittest.TestCase):
         self.assertIn(f"sweep | kept | the earlier sweep in {self.out} is now {self.out}.1", self.said)
         self.main("--set", "fluid.density=1", "--until", "0.5")
         self.assertEqual((self.started(), self.kept(2)), (["1"], ["2.0"]))
+        (self.folder / "sand" / "scene.toml").write_text('[fluid]\ndensity = 1.5\n[grains]\nfile = "grains.csv"\n')
+        for text in ("1", "2", "2"):  # a file that the scene names is part of it
+            (self.folder / "sand" / "grains.csv").write_text(text)
+            self.main("--set", "fluid.density=1", "--until", "0.5")
+        self.assertEqual((self.started(), self.kept(4)), (["1", "1"], ["2.0"]))
         self.main("--set", "fluid.density=13", "--until", "0.5")  # one that fails, and then nothing is lost by another scene
         self.main("--set", "fluid.density=1", "--until", "0.5")
-        self.assertFalse(self.out.with_name("out.3").exists())
+        self.assertFalse(self.out.with_name("out.5").exists())
 
     def test_an_expression_that_is_another_is_another_run(self):
         self.main("--set", "particles.hydraulic_ratio=1", "--let", "fluid.density=2*particles.hydraulic_ratio")
