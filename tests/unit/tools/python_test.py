@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -17,7 +18,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import bplbm  # noqa: E402
 import h5py  # noqa: E402
 import numpy as np  # noqa: E402
-from bplbm import reading  # noqa: E402
+from bplbm import compare, reading  # noqa: E402
 
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 
@@ -179,6 +180,10 @@ class Folder(unittest.TestCase):
                           (lambda: bplbm.Run(self.parent), "these in it do: sand")):
             with self.assertRaisesRegex(FileNotFoundError, said):
                 ask()
+        with unittest.mock.patch.object(sys, "argv", ["compare", str(self.parent / "snad")]), \
+                contextlib.redirect_stderr(io.StringIO()) as told:
+            self.assertEqual(compare.main(), 2)
+        self.assertRegex(told.getvalue(), "compare . error . there is no folder .*snad; in .* there are: sand")
         (self.folder / "averages.h5").unlink()
         with self.assertRaisesRegex(FileNotFoundError, r"has no averages.h5; the scene asks for it with \[average\]"):
             _ = self.run_.averages
