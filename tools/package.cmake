@@ -1,5 +1,6 @@
 # The installed tree, which may be moved as a whole, and the Debian package that CPack makes of it:
 #   bin/bplbm   lib/bplbm/bin (the programs; `liggghts` is also Debian's)   share/bplbm/{tools,cases,tests}   share/doc/bplbm
+# All documents lie in share/bplbm as in the sources, so that their links hold.
 # Whatever is run from it writes into the current folder only.
 include(GNUInstallDirs)
 set(share ${CMAKE_INSTALL_DATADIR}/bplbm)
@@ -17,7 +18,19 @@ install(FILES tools/launch.py tools/pictures.py tools/trace_plot.py DESTINATION 
 install(DIRECTORY cases DESTINATION ${share} PATTERN __pycache__ EXCLUDE PATTERN out EXCLUDE
   PATTERN log.liggghts EXCLUDE)
 install(DIRECTORY tests/hard DESTINATION ${share}/tests PATTERN __pycache__ EXCLUDE)
-install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES tools/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME bplbm)
+
+# Documents, and the files of the sources that they link to.
+file(GLOB_RECURSE documents RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/lbm_solver/*.md ${PROJECT_SOURCE_DIR}/liggghts_coupling/*.md ${PROJECT_SOURCE_DIR}/protocol/*.md
+  ${PROJECT_SOURCE_DIR}/tests/*.md ${PROJECT_SOURCE_DIR}/tools/*.md)
+foreach(document README.md CHANGELOG.md CONTRIBUTING.md LICENSE lbm_solver/architecture.png
+    lbm_solver/coupling/particles.h protocol/solid/bplbm_solid.h protocol/solid/bplbm_solid.f90 protocol/wire/channel.h
+    tools/engines/c/engine.c tools/engines/fortran/engine.f90 ${documents})
+  cmake_path(GET document PARENT_PATH folder)
+  install(FILES ${document} DESTINATION ${share}/${folder})
+endforeach()
+install(FILES CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 
 # What the programs ask of a processor, by the kernel's names: bplbm run refuses a machine that lacks it.

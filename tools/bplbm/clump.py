@@ -163,7 +163,8 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("mesh", type=pathlib.Path, help="a closed surface, .stl")
     parser.add_argument("spheres", type=int, help="how many")
-    parser.add_argument("--out", type=pathlib.Path, help="default: MESH-K.txt beside the mesh")
+    parser.add_argument("--out", type=pathlib.Path, help="default: MESH-SPHERES.txt beside the mesh")
+    parser.add_argument("--force", action="store_true", help="replace a file of that name")
     parser.add_argument("--fineness", type=int, default=40, help="places along the longest axis (40)")
     options = parser.parse_args()
     if options.spheres < 1 or options.fineness < 8:
@@ -173,13 +174,19 @@ def main():
     corners = read_stl(options.mesh)
     if not is_closed(corners):
         parser.error(f"{options.mesh} is not closed: it does not say what is inside; close it")
+    out = options.out or options.mesh.with_name(f"{options.mesh.stem}-{options.spheres}.txt")
+    if out.is_dir() or out.exists() and not options.force:
+        parser.error(f"{out} is there: it is not overwritten; give another --out" + ("" if out.is_dir() else ", or --force to replace it"))
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        parser.error(f"{out.parent}: {error.strerror}; give another --out")
     centres, radii = fill(corners, options.spheres, options.fineness)
     mesh = of_mesh(corners)
     radii = grown(centres, radii, mesh.volume)
     centres = centres - union_moments(centres, radii)[1]
     clump = Body.of_moments(*union_moments(centres, radii))
     mesh.centroid = mesh.centroid - mesh.centroid  # the clump's frame is about its own
-    out = options.out or options.mesh.with_name(f"{options.mesh.stem}-{len(radii)}.txt")
     out.write_text("".join(f"{x:.9g} {y:.9g} {z:.9g} {r:.9g}\n" for (x, y, z), r in zip(centres, radii)))
     print("\n".join(report(mesh, clump)))
     print(f"{len(radii)} spheres, in the unit of the mesh: {out}\n"

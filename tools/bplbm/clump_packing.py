@@ -4,12 +4,14 @@ push each other away until those of different bodies overlap no more."""
 
 from dataclasses import dataclass
 import pathlib
+import time
 
 import numpy as np
 
 from bplbm.clump import union_moments
 from bplbm.project import tool
 
+SILENCE = 5.0  # s from one line of progress to the next
 LISTS, PATIENCE = 1000, 2000  # lists of neighbours, at most, and steps with one
 
 
@@ -146,11 +148,15 @@ def relax(bodies, overlap):
     the smaller radius is within the bound, or no more is gained. Returns what is left."""
     skin = 0.3 * bodies.radii.min()
     left = np.inf
+    said = time.monotonic()
     for _ in range(LISTS):
         pairs, way = bodies.neighbours(2 * skin), 0.0
         left = bodies.worst(pairs)
         if left <= overlap:
             return left
+        if time.monotonic() > said + SILENCE:
+            said = time.monotonic()
+            print(f"packing | the largest overlap is {left:.2g} radii", flush=True)
         v, w = np.zeros_like(bodies.middles), np.zeros((len(bodies.middles), 3))
         step, mix, downhill = 0.2, 0.1, 0
         for _ in range(PATIENCE):

@@ -19,7 +19,9 @@ MODULES = {
     "report": ("bplbm.report.command", "speed against error of every choice, and the stability of hard cases"),
 }
 OWN = {"check": "looks at a scene without running it: grid, steps, numbers, what is on, the time to expect",
-       "where": "prints the folders of the programs, the scenes and the documents"}
+       "keys": "every key of a scene with type, unit, default, range and meaning",
+       "where": "prints the folders of the programs, the scenes and the documents; of one of them with its name"}
+OF_CHECK = ("--liggghts-vars",)  # options of lbm check, handed on
 PROGRAMS = {"trace": "looks at, compares, cuts and draws recorded exchanges", "replay": "plays a recorded exchange to a program"}
 
 
@@ -57,9 +59,10 @@ def check(words):
     """lbm check of a scene and its overlays, chosen as with bplbm run. Ends the process."""
     from bplbm.options import arguments, fail, one_value
     if not words or words[0] in ("-h", "--help"):
-        print("usage: bplbm check SCENE [--set NAME] [--variant NAME] [--KEY VALUE] [--overlay FILE]\n" + OWN["check"])
+        print("usage: bplbm check SCENE [--set NAME] [--variant NAME] [--KEY VALUE] [--overlay FILE] [--liggghts-vars]\n"
+              + OWN["check"] + "\n--liggghts-vars prints the variables that the script of the solid gets instead")
         return 0
-    args = arguments(words)
+    args = arguments([word for word in words if word not in OF_CHECK])
     if not args.scene:
         fail("which scene? bplbm run --list shows them")
     one_value(args, "bplbm check")
@@ -67,12 +70,24 @@ def check(words):
         fail(f"{args.scene.name} has no fluid: there is nothing that lbm could check")
     if note := note_on_partner(args.scene, scene_files(args)):
         print(f"check | note | {note}", file=sys.stderr, flush=True)
-    os.execv(fluid_program(), [str(fluid_program()), "check", *scene_files(args)])
+    os.execv(fluid_program(), [str(fluid_program()), "check", *(word for word in words if word in OF_CHECK), *scene_files(args)])
 
 
-def where():
-    print(f"programs   {BIN}\nscenes     {CASES}\nPython     {ROOT / 'tools'}   (import bplbm)\n"
-          f"documents  {CASES / 'TUTORIAL.md'}, {CASES / 'TROUBLESHOOTING.md'}, {CASES / 'PYTHON.md'}")
+def where(words):
+    """Prints all places, or the path alone of the one that is named."""
+    places = {"programs": BIN, "scenes": CASES, "common": CASES / "common", "python": ROOT / "tools", "documents": ROOT}
+    if words and words[0] in ("-h", "--help"):
+        print(f"usage: bplbm where [{'|'.join(places)}]\n{OWN['where']}")
+        return 0
+    if words[1:] or words and words[0] not in places:
+        return mistake(f"where: one of {', '.join(places)}, or nothing for all")
+    if words:
+        print(places[words[0]])
+        return 0
+    notes = {"common": "scripts that scenes include", "python": "import bplbm", "documents": "README.md; cases/TUTORIAL.md, "
+             "RUNNING.md, TROUBLESHOOTING.md, PYTHON.md; lbm_solver/docs/scene.md, output.md"}
+    for name, path in places.items():
+        print(f"{name:10} {path}" + (f"   ({notes[name]})" if name in notes else ""))
     return 0
 
 
@@ -88,7 +103,9 @@ def main():
     if name == "check":
         return check(words)
     if name == "where":
-        return where()
+        return where(words)
+    if name == "keys":
+        os.execv(fluid_program(), ["lbm", "--keys"])
     if name not in MODULES:
         return mistake(f"there is no command '{name}'; there are: {', '.join([*MODULES, *OWN, *PROGRAMS])}")
     sys.argv = [f"bplbm {name}", *words]
@@ -103,6 +120,11 @@ def command_line():
     except KeyboardInterrupt:
         print("bplbm | stopped: interrupted by Ctrl-C", file=sys.stderr)
         sys.exit(1)
+    except BrokenPipeError:  # of `bplbm keys | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        sys.exit(1)
+    except PermissionError as error:
+        sys.exit(mistake(f"{error.filename}: {error.strerror}; choose another folder"))
 
 
 if __name__ == "__main__":

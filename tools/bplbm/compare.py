@@ -76,6 +76,9 @@ def main():
     for folder in args.folders:
         try:
             runs.append(Run(folder))
+        except FileNotFoundError as e:  # it says what there is instead
+            print(f"compare | error | {e}", file=sys.stderr)
+            return 2
         except (OSError, ValueError) as e:
             why = e.strerror if isinstance(e, OSError) else e
             print(f"compare | error | {folder}/summary.json: {why}; this is no finished run: run the scene first",

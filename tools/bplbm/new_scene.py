@@ -3,7 +3,8 @@
     tools/new sand --kind packed --dimensions 2
 
 A template is a folder of templates/: a line that begins with `@2 ` or `@3 ` is for that many dimensions, NAME is the
-scene's name, WHAT a disc or a sphere, SHOWS what the kind shows.
+scene's name, WHAT a disc or a sphere, SHOWS what the kind shows, CHECK the command that looks at a scene, and TUTORIAL,
+SCENE.md and COMMANDS.md are the paths of these documents.
 """
 
 import argparse
@@ -15,7 +16,7 @@ import sys
 import tomllib
 from dataclasses import dataclass
 
-from bplbm.project import CASES, INSTALLED, TOOLS, tool
+from bplbm.project import CASES, INSTALLED, ROOT, TOOLS, tool
 from bplbm.scenes import scenes
 
 TEMPLATES = pathlib.Path(__file__).resolve().parent / "templates"
@@ -65,7 +66,11 @@ def rendered(text, name, dimensions, shows=""):
             line = line[3:]
         lines.append(line)
     what = "disc" if dimensions == 2 else "sphere"
-    text = "\n".join(lines).replace("NAME", name).replace("WHAT", what).replace("TUTORIAL", str(CASES / "TUTORIAL.md")).replace("RUN ", tool("run") + " ")
+    text = "\n".join(lines).replace("NAME", name).replace("WHAT", what).replace("RUN ", tool("run") + " ")
+    for word, told in (("CHECK", "bplbm check" if INSTALLED else "lbm check"), ("TUTORIAL", CASES / "TUTORIAL.md"),
+                       ("SCENE.md", ROOT / "lbm_solver/docs/scene.md"),
+                       ("COMMANDS.md", ROOT / "liggghts_coupling/docs/commands.md")):
+        text = text.replace(word, str(told))
     return text.replace("SHOWS", shows) + "\n"
 
 

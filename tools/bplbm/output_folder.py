@@ -10,6 +10,8 @@ import os
 import pathlib
 import socket
 
+from bplbm.project import tool
+
 MARK, LOCK = ".bplbm", ".bplbm.lock"
 RESULTS = ("summary.json", "checkpoint.h5", "checkpoint.before.h5", "fault.h5", "probes.csv", "points.csv", "obstacles.csv", "fields.h5")
 OTHERS = ("fields.xdmf", "lbm.log", "liggghts.log", "lammps.log", "breaks.csv", "plot.log", "view.py",
@@ -100,7 +102,7 @@ class Hold:
             fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             self.file.close()
-            raise Refused(f"{folder}: another tools/run is at work in it; wait for its end, or give another --out") from None
+            raise Refused(f"{folder}: another {tool('run')} is at work in it; wait for its end, or give another --out") from None
         except OSError:  # a file system without locks: lbm's lock remains
             pass
 

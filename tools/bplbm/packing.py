@@ -14,6 +14,7 @@ script needs besides.
 """
 
 import argparse
+import os
 import pathlib
 import subprocess
 import sys
@@ -68,6 +69,7 @@ def arguments():
     p.add_argument("--periodic", default="", choices=["", "x", "y", "z", "xy", "xz", "yz", "xyz"], help="periodic directions")
     p.add_argument("--overlap", type=float, default=1e-3, help="largest overlap over the smaller radius")
     p.add_argument("--seed", type=int, default=1)
+    p.add_argument("--force", action="store_true", help="replace an earlier packing of that name")
     p.add_argument("--look", action="store_true", help=argparse.SUPPRESS)  # at the arguments, and go
     args = p.parse_args()
     if len(args.box) not in (4, 6):
@@ -177,7 +179,7 @@ def separations(places, sizes, args):
 def relax(args, places, sizes):
     """Runs LIGGGHTS until the overlaps are within the bound. Returns places and what is left."""
     with tempfile.TemporaryDirectory() as folder:
-        for _ in range(ROUNDS // 10):
+        for number in range(1, ROUNDS // 10 + 1):
             text = script(args, places, sizes) + f"run {10 * STEPS}\n"
             pathlib.Path(folder, "in.packing").write_text(text)
             job = subprocess.run([BIN / "liggghts", "-in", "in.packing", "-screen", "none"], cwd=folder, env=environment(shared=False),
@@ -193,6 +195,7 @@ def relax(args, places, sizes):
                 left = separations(places, sizes, args)
                 if left <= args.overlap:
                     return places, left
+            print(f"packing | round {number} of at most {ROUNDS // 10}: the largest overlap is {left:.2g} radii", flush=True)
     return places, left
 
 
@@ -214,20 +217,55 @@ def pack_clumps(args, sizes, random):
         fail(str(error))
 
 
-MADE_BY = "; made by tools/make_packing"
+MADE_BY = f"; made by {tool('make_packing')}"
+OURS = ("; made by tools/make_packing", "; made by bplbm make_packing")
+OF_NEW = ("; made by tools/new.", "; made by bplbm new.")  # the loose grains of a new scene
+
+
+def words_of(line):
+    """The command line that the first line of a packing holds."""
+    return next((line.partition(ours)[2].strip() for ours in OURS if ours in line), "")
+
+
+def own_words():
+    """This command line as a packing holds it: --force makes no other packing."""
+    return " ".join(word for word in sys.argv[1:] if word != "--force")
+
+
+def first_line(path):
+    """Of a file that may be anything; none of a folder."""
+    if not path.is_file():
+        return ""
+    with open(path, errors="replace") as file:
+        return file.readline(10000)
 
 
 def refuse_others(args):
-    """A mistyped name costs no file that is no packing."""
-    for ending, ours in ((".liggghts", MADE_BY), (".csv", "x,y,")):
-        path = pathlib.Path(args.out + ending)
-        if not path.exists():
-            continue
-        if path.is_file():
-            with open(path, errors="replace") as file:
-                if ours in file.readline(10000):
-                    continue
-        fail(f"{path} is there and no packing of this tool: it is not overwritten; give another --out, or remove it")
+    """A name costs no file that is no packing, and no other packing without --force. The same command makes the same one."""
+    script, table = (pathlib.Path(args.out + ending) for ending in (".liggghts", ".csv"))
+    for path, ours in ((script, (*OURS, *OF_NEW)), (table, ("x,y,",))):
+        if path.exists() and not any(word in first_line(path) for word in ours):
+            fail(f"{path} is there and no packing of this tool: it is not overwritten; give another --out, or remove it")
+    if args.force:
+        return
+    line = first_line(script)
+    if any(word in line for word in OF_NEW):
+        fail(f"{script} holds the grains that {tool('new')} made; --force replaces them, or give another --out")
+    if line and words_of(line) != own_words():
+        fail(f"{script} holds another packing, made with {words_of(line)}; give another --out, or --force to replace it")
+    if table.exists() and not line:
+        fail(f"{table} is there without {script.name}; give another --out, or --force to replace it")
+
+
+def make_folder(args):
+    """Of the files, before anything is computed."""
+    folder = pathlib.Path(args.out).parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        fail(f"{folder}: {error.strerror}; give another --out")
+    if not os.access(folder, os.W_OK):
+        fail(f"{folder}: this folder cannot be written to; give another --out")
 
 
 HOW_CLUMPS_MOVE = """# Spheres of a clump have its number as molecule. A script with them has, in this order,
@@ -247,7 +285,7 @@ def write(args, places, sizes, clumps=None, excess=1.0):
     excess: of the volumes of a clump's spheres over its own, by which their density is divided."""
     density = "${disc_density}" if dimensions(args) == 2 else "${density_max}"
     count = f"{clumps[0][-1]} clumps of {len(sizes) // clumps[0][-1]}" if clumps else f"{len(sizes)} {kind(args)}"
-    lines = [f"# {count}{MADE_BY} {' '.join(sys.argv[1:])}"]
+    lines = [f"# {count}{MADE_BY} {own_words()}"]
     if clumps:
         lines += [*HOW_CLUMPS_MOVE.splitlines(), f"variable clump_density equal {density}/{excess:.9g}"]
         density = "${clump_density}"
@@ -272,6 +310,9 @@ def main():
     sizes = diameters(args, random)
     if args.look:
         return
+    make_folder(args)
+    print(f"packing | {len(sizes)} {kind(args)} move apart until none overlaps by more than {args.overlap:g} radii; this may take minutes",
+          flush=True)
     low, high = ends(args)
     d = dimensions(args)
     if args.clump:

@@ -3,12 +3,14 @@
 import numpy as np
 
 UNIT_OF_COLUMN = {"time": "s", **dict.fromkeys(("x", "y", "z"), "m"),
+                  **dict.fromkeys((f"{axis}{end}" for axis in "xyz" for end in (1, 2)), "m"),  # of a bond
                   **dict.fromkeys(("vx", "vy", "vz", "ux", "uy", "uz"), "m/s"),
                   **dict.fromkeys(("omega", "wx", "wy", "wz"), "rad/s"), **dict.fromkeys(("fx", "fy", "fz", "force"), "N"),
                   **dict.fromkeys(("torque", "tx", "ty", "tz"), "N m"), "pressure": "Pa", "radius": "m"}
 UNIT_OF_FIELD = {"velocity": "m/s", "pressure": "Pa", "solid_fraction": "1", "image_fraction": "1", "viscosity": "m2/s"}
 PARTICLE = {2: ("id", "x", "y", "radius", "vx", "vy", "omega", "type"),
             3: ("id", "x", "y", "z", "radius", "vx", "vy", "vz", "wx", "wy", "wz", "type")}
+SLACK = 1e-6  # part of a length, for round-off in a place that is on the edge
 BOND_STATES = ("intact", "broken by tension", "broken by shear")
 
 
@@ -97,12 +99,23 @@ class Field:
         length.unit = self.unit
         return length
 
+    def ends(self, axis):
+        """Where the box begins and ends along an axis [m]; cells are cubes, as large as between two centres."""
+        cell = next((float(c[1] - c[0]) for c in (self.coordinates[axis], *self.coordinates.values()) if len(c) > 1), np.inf)
+        centres = self.coordinates[axis]
+        return centres[0] - 0.5 * cell, centres[-1] + 0.5 * cell
+
     def at(self, **place):
         """Values of the cells nearest to places [m]: `at(x=0.01)` is a line (a plane in three dimensions), with all axes
-        given a point. Throws ValueError for an axis that the box has not."""
+        given a point. Throws ValueError for an axis that the box has not, and for a place outside of it."""
         values = self.values
         if unknown := [axis for axis in place if axis not in self.coordinates]:
             raise ValueError(f"{self.name} has no axis {unknown[0]}; it has {', '.join(self.coordinates)}")
+        for axis, where in place.items():
+            low, high = self.ends(axis)
+            slack = SLACK * (high - low)
+            if not low - slack <= where <= high + slack:
+                raise ValueError(f"{axis} = {where:.6g} m is outside of the box, which lies between {low:.6g} and {high:.6g} m")
         for k in reversed(range(len(self.dims))):  # from the last axis on, so that the first ones keep their numbers
             if self.dims[k] in place:
                 centres = self.coordinates[self.dims[k]]
@@ -118,6 +131,39 @@ class Field:
     def __repr__(self):
         shape = ", ".join(f"{dim} {n}" for dim, n in zip(self.dims, self.shape, strict=True))
         return f"Field {self.name} [{self.unit}] at {self.time:.6g} s: {shape}"
+
+
+def centres(file, cells):
+    """Of the cells along x, y (, z) [m], in a file of fields of [nz][ny][nx] cells."""
+    cell, about = file.attrs["cell"], dict(file.attrs)
+    return {axis: about.get(f"origin_{axis}", 0.0) + cell * (np.arange(n) + 0.5)
+            for axis, n in zip("xyz", reversed(cells))}  # noqa: B905  (two or three of them)
+
+
+class Averages(dict):
+    """What [average] has summed: name -> Field, as `averages.velocity_mean`; velocity_rms and pressure_rms are the root mean
+    squares of what deviates. `averages["from"]`, `averages["to"]` [s] and `averages["samples"]` say over which time."""
+
+    def __getattr__(self, name):
+        if name not in self:
+            raise AttributeError(f"the averages have no {name}; they have {', '.join(self)}")
+        return self[name]
+
+    def __repr__(self):
+        fields = ", ".join(f"{name} [{field.unit}]" for name, field in self.items() if isinstance(field, Field))
+        return f"Averages of {self['samples']:.0f} samples from {self['from']:.6g} to {self['to']:.6g} s: {fields}"
+
+
+def read_averages(path):
+    """Of an averages.h5."""
+    import h5py
+    with h5py.File(path) as file:
+        axes, about = centres(file, file["pressure_mean"].shape), dict(file.attrs)
+        found = Averages({name: Field(name, file[name][...], float(about["to"]), axes) for name in file})
+        found.update({key: float(about[key]) for key in ("from", "to", "samples")})
+        for name in file:
+            found[name].unit = said if isinstance(said := file[name].attrs["unit"], str) else said.decode()
+    return found
 
 
 class Frame:
@@ -139,10 +185,7 @@ class Frame:
         """Centres of the cells along x, y (, z) [m]."""
         import h5py
         with h5py.File(self.path) as file:
-            cells = file[self.group]["pressure"].shape  # [nz][ny][nx]
-            cell, origin = file.attrs["cell"], dict(file.attrs)
-        return {axis: origin.get(f"origin_{axis}", 0.0) + cell * (np.arange(n) + 0.5)
-                for axis, n in zip("xyz", reversed(cells))}  # noqa: B905  (two or three of them)
+            return centres(file, file[self.group]["pressure"].shape)
 
     def middle(self, name):
         """The plane of cells in the middle of y of a field in three dimensions, [nz][nx]; no more is read from the file."""
@@ -206,9 +249,14 @@ class Frames:
         return np.array([frame.time for frame in self.frames])
 
     def at(self, time):
-        """The frame nearest to a time [s]. Throws LookupError without any."""
+        """The frame nearest to a time [s]. Throws LookupError without any, and for a time that is further from the first or
+        last than half of the time between two."""
         if not self.frames:
             raise LookupError("this run has no fields: output.fields_every is 0, or it ended before the first")
+        first, last = self.times[[0, -1]]
+        slack = 0.5 * np.diff(self.times).max(initial=SLACK * max(abs(first), abs(last)))
+        if not first - slack <= time <= last + slack:
+            raise LookupError(f"{time:.6g} s is outside of this run's fields, which were written from {first:.6g} to {last:.6g} s")
         return self.frames[int(np.abs(self.times - time).argmin())]
 
     def __len__(self):

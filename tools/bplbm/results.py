@@ -6,7 +6,25 @@ import pathlib
 import h5py
 import numpy as np
 
-from bplbm.reading import Frames, read_table
+from bplbm.mpi_job import reason_of
+from bplbm.reading import Frames, read_averages, read_table
+
+
+ASKED_BY = {"averages.h5": "[average]", "fields.h5": "output.fields_every"}
+
+
+def why_no_run(folder):
+    """Why a folder holds no run that came to its end, and what to look at."""
+    if not folder.is_dir():
+        beside = sorted(p.parent.name for p in folder.parent.glob("*/summary.json"))
+        return f"there is no folder {folder}" + (f"; in {folder.parent} there are: {', '.join(beside)}" if beside else "")
+    log = folder / "error.log"
+    if log.is_file():
+        return f"{folder}: this run has failed (there is no summary.json): {reason_of(log.read_text(errors='replace'))}; {log} holds all " \
+               "that was said"
+    runs = sorted(p.parent.name for p in folder.glob("*/summary.json"))
+    return f"{folder} holds no run that came to its end (there is no summary.json)" + \
+        (f"; these in it do: {', '.join(runs)}" if runs else "; is it still at work? Its lbm.log says how far it is")
 
 
 def studies(run):
@@ -19,25 +37,49 @@ class Run:
     """The output folder of one run: summary and parameters at once, all else when it is asked for."""
 
     def __init__(self, folder):
-        """Throws OSError where there is no summary.json: the run has not come to its end."""
+        """Throws FileNotFoundError where there is no summary.json, and says why: the run has not come to its end."""
         self.folder = pathlib.Path(folder)
+        if not (self.folder / "summary.json").is_file():
+            raise FileNotFoundError(why_no_run(self.folder))
         self.summary = json.loads((self.folder / "summary.json").read_text())
         self.parameters = self.summary["parameters"]
 
     def probes(self, particle=1):
-        """Columns of probes.csv of one particle: dict name -> array, SI units."""
-        table = read_table(self.folder / "probes.csv")
+        """Columns of probes.csv of one particle: a Table, name -> array, SI units in `.units`. Throws LookupError where it has no such one."""
+        table = read_table(self.file("probes.csv"))
         mine = table["id"] == particle
-        return {name: column[mine] for name, column in table.items()}
+        if not mine.any():
+            ids = np.unique(table["id"]).astype(int)
+            there = f"they are {ids[0]} … {ids[-1]}" if len(ids) else "there are none"
+            raise LookupError(f"{self.folder / 'probes.csv'} has no particle {particle}; {there}")
+        return table.where(mine)
 
     def table(self, name):
-        """probes, points, obstacles or breaks (any CSV file of the folder): a pandas DataFrame where pandas is installed,
-        else a Table, name -> array; SI units, in `.attrs["units"]` or `.units`. Throws OSError where there is none."""
-        table = read_table(self.folder / f"{name}.csv")
+        """probes, points, obstacles, breaks or sensor-NAME (any CSV file of the folder): a pandas DataFrame where pandas is
+        installed, else a Table, name -> array; SI units, in `.attrs["units"]` or `.units`. Throws FileNotFoundError where
+        there is none, and says which there are."""
+        table = read_table(self.file(f"{name}.csv"))
         try:
             return table.to_pandas()
         except ImportError:
             return table
+
+    def file(self, name):
+        """The path of a file of the run. Throws FileNotFoundError, and says which of its kind there are."""
+        path = self.folder / name
+        if path.is_file():
+            return path
+        there = sorted(p.name for p in self.folder.glob(f"*{path.suffix}"))
+        if path.suffix == ".csv":
+            found = f"its tables are: {', '.join(p.removesuffix('.csv') for p in there) or 'none'}"
+        else:
+            found = f"the scene asks for it with {ASKED_BY[name]}" if name in ASKED_BY else f"there are: {', '.join(there) or 'none'}"
+        raise FileNotFoundError(f"{self.folder} has no {name}; {found}")
+
+    @property
+    def sensors(self):
+        """The table of each [[sensor]]: dict name -> as `table`."""
+        return {path.stem.removeprefix("sensor-"): self.table(path.stem) for path in sorted(self.folder.glob("sensor-*.csv"))}
 
     @property
     def breaks(self):
@@ -51,10 +93,9 @@ class Run:
 
     @property
     def averages(self):
-        """What [average] has summed: dict velocity_mean, velocity_rms [m/s], pressure_mean, pressure_rms [Pa] -> array, and
-        `from`, `to` [s] and `samples`. Throws OSError where there is none."""
-        with h5py.File(self.folder / "averages.h5") as f:
-            return {**{name: f[name][...] for name in f}, **{key: f.attrs[key] for key in ("from", "to", "samples")}}
+        """What [average] has summed: velocity_mean, velocity_rms, pressure_mean, pressure_rms as Fields, by name or as
+        `averages.velocity_mean`, and `from`, `to` [s] and `samples`. Throws FileNotFoundError where there is none."""
+        return read_averages(self.file("averages.h5"))
 
     @property
     def results(self):
@@ -63,8 +104,10 @@ class Run:
 
     @property
     def quantities(self):
-        """Numbers without a reference: dicts with name, value, unit."""
-        return self.summary.get("quantities", [])
+        """Numbers without a reference: dicts with name, value, unit; those of every run, and those of the scene's plot.py,
+        which replace them by name."""
+        from bplbm.quantities import default_quantities  # it needs this module
+        return list({q["name"]: q for q in [*default_quantities(self), *self.summary.get("quantities", [])]}.values())
 
     @property
     def studies(self):
@@ -79,25 +122,25 @@ class Run:
 
     def frames(self):
         """Times and names of the field frames."""
-        with h5py.File(self.folder / "fields.h5") as f:
+        with h5py.File(self.file("fields.h5")) as f:
             return [(f[name].attrs["time"], name) for name in sorted(f)]
 
     def frame(self, name):
         """One frame: velocity [ny][nx][3], pressure [ny][nx], particles [n][8], SI units."""
-        with h5py.File(self.folder / "fields.h5") as f:
+        with h5py.File(self.file("fields.h5")) as f:
             return {key: f[name][key][...] for key in f[name]}
 
     def mean_velocity(self, name):
         """Mean over the box of the velocity of a frame [m/s], its components: in steady flow the flux, covered cells or not,
         with the solid terms by resistance, which are the default (lbm_solver/docs/resistance.md)."""
-        with h5py.File(self.folder / "fields.h5") as f:
+        with h5py.File(self.file("fields.h5")) as f:
             velocity = np.asarray(f[name]["velocity"], float)
         return velocity.reshape(-1, velocity.shape[-1]).mean(axis=0)
 
     def flux(self, name):
         """Mean over the box of the momentum that arrives in the cells, over the density [m/s], its components: in steady flow
         the flux, covered cells or not, with every solid term. An empty list where a scene has no covered cells."""
-        with h5py.File(self.folder / "fields.h5") as f:
+        with h5py.File(self.file("fields.h5")) as f:
             return [f[name].attrs[f"flux_{axis}"] for axis in "xyz" if f"flux_{axis}" in f[name].attrs]
 
     def save(self, figure, name):

@@ -110,4 +110,6 @@ def find(text):
         return Scene(CASES / text.rstrip("/"))
     if "/" in text:
         raise Unknown(f"no scene '{text}': there is no such folder; {tool('new')} makes a new scene")
+    if (pathlib.Path(CASES.name) / path / "scene.toml").is_file():  # of an installed tree, whose own scenes lie elsewhere
+        raise Unknown(f"no shipped scene '{text}'; the one here is named by its path, {CASES.name}/{text}")
     raise Unknown(f"no scene '{text}'; there are: {', '.join(scenes())}; or give the path of a scene's folder")

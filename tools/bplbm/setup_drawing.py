@@ -173,7 +173,8 @@ def main():
         try:
             picture = draw(scene)
         except (OSError, KeyError, TypeError, ValueError) as e:
-            why = f"lacks {e}; build/release/bin/lbm check says what a scene needs" if isinstance(e, KeyError) else e
+            look = f"{'bplbm' if INSTALLED else 'build/release/bin/lbm'} check"
+            why = f"lacks {e}; {look} says what a scene needs" if isinstance(e, KeyError) else e
             print(f"draw_setup | error | {scene.file}: {why}", file=sys.stderr)
             return 2
         print(f"draw_setup | {picture}")

@@ -5,7 +5,8 @@
     tools/sweep bed --set phi=0.1,0.2,0.3 --let 'fluid.body_force=[0, phi*(particles.density/fluid.density-1)*9.81]'
 
 A name without a table is one of [particles.variables], or, if an expression uses it, a name for expressions. What has been
-run is kept and not run again: the same command goes on with what is missing, and more values only add runs.
+run is kept and not run again: the same command goes on with what is missing, and other values and keys only add runs and
+columns. Where the scene or an option as --until has changed, the earlier folder is kept beside, as DIR.1, and all begins anew.
 """
 
 import argparse
@@ -19,16 +20,20 @@ import subprocess
 import sys
 import threading
 import time
+import tomllib
+from dataclasses import dataclass
 
 from bplbm import output_folder
 from bplbm.mpi_job import reason_of
 from bplbm.options import arguments, label, out_folder, scene_files, whole
+from bplbm import scene_keys
 from bplbm.project import TOOLS, tool
 from bplbm.scenes import scenes
-from bplbm.sweep_values import Mistake, Sweep, axis, path_of
+from bplbm.sweep_values import Mistake, Sweep, axis, look_up, path_of
 from bplbm.toml_text import read_laid_over, toml
 
 OUT_OF_TOLERANCE = 4
+MOST_LETTERS = 200  # of a file's name
 WAYS = {0: "ok", 1: "fault", 2: "refused", 3: "numerics", OUT_OF_TOLERANCE: "out of tolerance"}
 ANSWERED = (0, OUT_OF_TOLERANCE)  # runs that came to their end
 HELP_ON_MORE = f"Other options are those of {tool('run')}, as --variant, --until or --threads, and reach every run."
@@ -75,13 +80,22 @@ class Table:
 
     def __init__(self, folder):
         self.folder, self.path, self.lock = folder, folder / "sweep.json", threading.Lock()
-        self.rows = json.loads(self.path.read_text())["runs"] if self.path.exists() else {}
+        told = json.loads(self.path.read_text()) if self.path.exists() else {}
+        self.rows, self.base = told.get("runs", {}), told.get("base")
+
+    def differs(self, base, runs):
+        """Whether what is there follows from another scene or other options, or runs of these names from other overlays."""
+        return bool(self.rows) and (self.base != base or any(self.rows.get(run.name, {"made_of": run.made_of})["made_of"] != run.made_of
+                                                             for run in runs))
+
+    def finished(self):
+        return sum(row["code"] in ANSWERED for row in self.rows.values())
 
     def add(self, name, row):
         with self.lock:
             self.rows[name] = row
             part = self.path.with_suffix(".part")
-            part.write_text(json.dumps({"runs": self.rows}, indent=1, ensure_ascii=False) + "\n")
+            part.write_text(json.dumps({"base": self.base, "runs": self.rows}, indent=1, ensure_ascii=False) + "\n")
             part.replace(self.path)
 
     def has(self, name, made_of, retry):
@@ -89,12 +103,21 @@ class Table:
         return row is not None and row["made_of"] == made_of and (row["code"] in ANSWERED or not retry)
 
 
+def named_files(tables, folder):
+    """Files of a scene's folder that its tables name: meshes, images, tables in time."""
+    if isinstance(tables, str):
+        return [folder / tables] if 0 < len(tables) < MOST_LETTERS and (folder / tables).is_file() else []
+    parts = tables.values() if isinstance(tables, dict) else tables if isinstance(tables, list) else ()
+    return [path for part in parts for path in named_files(part, folder)]
+
+
 def made_of(args, overlay):
-    """A hash of all that a run follows from: scene, overlays, scripts, and the other options."""
+    """A hash of all that a run follows from: scene, overlays, files that they name, scripts, and the other options."""
     digest = hashlib.sha256(overlay.encode())
-    folder = args.scene.folder
-    for path in sorted({*map(pathlib.Path, scene_files(args)), *folder.glob("*.liggghts"), *folder.glob("in.*"),
-                        *folder.glob("plot.py")}):
+    folder, files = args.scene.folder, scene_files(args)
+    named = {*named_files(read_laid_over(files), folder), *named_files(tomllib.loads(overlay), folder)}
+    for path in sorted({*map(pathlib.Path, files), *named, *folder.glob("*.liggghts"), *folder.glob("*/*.liggghts"),
+                        *folder.parent.glob("common/*.liggghts"), *folder.glob("in.*"), *folder.glob("plot.py")}):
         digest.update(path.read_bytes())
     digest.update(repr((args.engine_command or args.engine, args.until)).encode())
     return digest.hexdigest()[:16]
@@ -102,12 +125,11 @@ def made_of(args, overlay):
 
 def results_of(folder):
     """Results, quantities and costs of a finished run: dict "name [unit]" -> number."""
-    from bplbm.quantities import default_quantities
     from bplbm.results import Run
     run = Run(folder)
     summary = run.summary
     numbers = {}
-    for number in [*summary["results"], *summary.get("quantities", []), *default_quantities(run)]:
+    for number in [*summary["results"], *run.quantities]:
         unit = "" if number["unit"] == "1" else f" [{number['unit']}]"
         numbers.setdefault(number["name"] + unit, number["value"])
     return {**numbers, "physical time [s]": summary["physical_seconds"], "largest Ma": summary["ma_max"],
@@ -120,6 +142,17 @@ def not_judged(folder):
     return f"not judged: {why}" if why else ""
 
 
+@dataclass(frozen=True)
+class Planned:
+    """A run: its name, the values of the axes and of the expressions by key, its overlay, and a hash of what it is made of."""
+
+    name: str
+    values: dict
+    computed: dict
+    overlay: str
+    made_of: str
+
+
 class Runner:
     """Starts the runs, some at a time, and ends them in good order at Ctrl-C."""
 
@@ -127,12 +160,12 @@ class Runner:
         self.words, self.table = words, table
         self.stopped, self.jobs = threading.Event(), set()
 
-    def run(self, name, chosen, overlay, hashed):
+    def run(self, run):
         if self.stopped.is_set():
             return
-        folder = self.table.folder
+        folder, name = self.table.folder, run.name
         file = folder / "overlays" / f"{name}.toml"
-        file.write_text(overlay)
+        file.write_text(run.overlay)
         line = [sys.executable, str(TOOLS / "launch.py"), *self.words, "--no-study", "--force", "--overlay", str(file),
                 "--out", str(folder / name)]
         with open(folder / "logs" / f"{name}.log", "w") as log:
@@ -147,7 +180,8 @@ class Runner:
         if self.stopped.is_set():
             return
         text = (folder / "logs" / f"{name}.log").read_text(errors="replace")
-        row = {"values": chosen, "made_of": hashed, "code": code, "seconds": round(time.monotonic() - start, 2),
+        row = {"values": run.values, "computed": run.computed, "made_of": run.made_of, "code": code,
+               "seconds": round(time.monotonic() - start, 2),
                "reason": not_judged(folder / name) if code in ANSWERED else reason_of(text)[:400],
                "results": results_of(folder / name) if code in ANSWERED else {}}
         self.table.add(name, row)
@@ -165,7 +199,7 @@ class Runner:
         before = {s: signal.signal(s, self.stop) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
             with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-                for done in [pool.submit(self.run, *run) for run in runs]:
+                for done in [pool.submit(self.run, run) for run in runs]:
                     done.result()
         finally:
             for number, handler in before.items():
@@ -173,12 +207,12 @@ class Runner:
 
 
 def planned(sweep, args):
-    """Name, values, overlay and hash of each run. Throws Mistake."""
+    """Each run. Throws Mistake."""
     runs = []
     for chosen in sweep.combinations():
         overlay = toml(sweep.overlay(chosen))
-        runs.append((sweep.label(chosen), chosen, overlay, made_of(args, overlay)))
-    if len({name for name, *_ in runs}) < len(runs):
+        runs.append(Planned(sweep.label(chosen), chosen, sweep.computed(chosen), overlay, made_of(args, overlay)))
+    if len({run.name for run in runs}) < len(runs):
         raise Mistake("two runs would have the same name; write values that differ in letters and digits")
     return runs
 
@@ -196,6 +230,50 @@ def take_folder(folder, scene):
         return output_folder.Hold(folder)
     except output_folder.Refused as refused:
         fail(refused)
+
+
+def take_table(out, args, runs):
+    """A Hold on the folder, and the Table in it. A folder whose runs follow from another scene or other options is kept
+    beside."""
+    base = made_of(args, "")
+    hold = take_folder(out, args.scene)
+    table = Table(out)
+    if table.differs(base, runs):
+        if finished := table.finished():
+            hold.file.close()
+            aside = output_folder.set_aside(out)
+            print(f"sweep | kept | the earlier sweep in {out} is now {aside}: its {finished} finished runs follow from another "
+                  "scene, other options or other expressions; this command begins anew")
+            hold = take_folder(out, args.scene)
+            table = Table(out)
+        table.rows = {}
+    table.base = base
+    return hold, table
+
+
+def columns_of_values(sweep, rows):
+    """Keys that vary between the rows (the axes of all of them), and all columns of values: name [unit] -> value of each row.
+    What a run has not set is as the scene has it, or empty."""
+    axes = list(dict.fromkeys([*(a.name for a in sweep.axes), *(name for row in rows.values() for name in row["values"])]))
+    lets = dict.fromkeys(name for row in rows.values() for name in row.get("computed", {}) if name not in axes)
+    columns = {}
+    for name in (*axes, *lets):
+        try:
+            path = sweep.target(name)
+        except Mistake:  # a name for expressions of an earlier command
+            path = None
+        of_scene = value_at(sweep.tables, path) if path else ""
+        for row in rows.values():
+            row.setdefault("all", {})[name] = {**row.get("computed", {}), **row["values"]}.get(name, of_scene)
+        columns[name] = scene_keys.with_unit(name, path)
+    return axes, columns
+
+
+def value_at(tables, path):
+    try:
+        return look_up(tables, path)
+    except KeyError:
+        return ""
 
 
 def checked(args):
@@ -223,14 +301,16 @@ def main():
         if not options.set:
             raise Mistake("nothing is varied; add --set KEY=VALUE,VALUE")
         sweep = Sweep(read_laid_over(scene_files(args)), tuple(map(axis, options.set)), tuple(map(let, options.let)))
+        if not args.scene.is_solid_alone:
+            scene_keys.check(sweep.paths())
         runs = planned(sweep, args)
     except Mistake as mistake:
         fail(mistake)
     except (OSError, ValueError) as error:
         fail(f"{args.scene.file}: {error}")
     if options.list:
-        for name, _, overlay, _ in runs:
-            print(f"# {name}\n{overlay}")
+        for run in runs:
+            print(f"# {run.name}\n{run.overlay}")
         return 0
     if options.look:
         return 0
@@ -241,18 +321,20 @@ def main():
 def go(args, words, options, sweep, runs, out):
     """The runs that are missing, the table and the page. Returns the exit code."""
     from bplbm.page.sweep import write_page, write_table  # they need numpy, which --look does without
-    hold = take_folder(out, args.scene)
-    table = Table(out)
-    missing = [run for run in runs if not table.has(run[0], run[3], options.retry)]
+    hold, table = take_table(out, args, runs)
+    missing = [run for run in runs if not table.has(run.name, run.made_of, options.retry)]
     if len(missing) < len(runs):
         print(f"sweep | {len(runs) - len(missing)} of {len(runs)} runs are there already")
+    if others := set(table.rows) - {run.name for run in runs}:
+        print(f"sweep | {len(others)} earlier runs of other values or keys stay in the table")
     runner = Runner(words, table)
     runner.all(missing, options.jobs)
-    rows = {name: table.rows[name] for name, *_ in runs if name in table.rows}
-    names = [a.name for a in sweep.axes]
-    print(f"sweep | table {write_table(out, names, rows)}")
-    print(f"sweep | page {write_page(out, args.scene, label(args), names, rows, sys.argv[1:])}")
+    rows = {name: table.rows[name] for name in dict.fromkeys([*(run.name for run in runs), *table.rows]) if name in table.rows}
+    axes, varied = columns_of_values(sweep, rows)
+    print(f"sweep | table {write_table(out, varied, rows)}")
+    print(f"sweep | page {write_page(out, args.scene, label(args), axes, varied, rows, sys.argv[1:])}")
     hold.file.close()
+    rows = {run.name: rows[run.name] for run in runs if run.name in rows}  # what this command has asked for
     if runner.stopped.is_set():
         print("sweep | stopped: the same command goes on with what is missing", file=sys.stderr)
         return 1

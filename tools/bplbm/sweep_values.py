@@ -197,13 +197,21 @@ class Sweep:
         for values in itertools.product(*(a.values for a in self.axes)):
             yield dict(zip((a.name for a in self.axes), values, strict=True))
 
-    def overlay(self, chosen):
-        """Tables of a run's overlay. Throws Mistake."""
+    def paths(self):
+        """Paths of the scene's keys that it sets."""
+        return [path for name in (*(a.name for a in self.axes), *(key for key, _ in self.lets)) if (path := self.target(name))]
+
+    def computed(self, chosen):
+        """Values of the expressions, by key. Throws Mistake."""
         values = dict(chosen)
         for key, text in self.lets:
             values[key] = evaluate(text, Names(self.tables, values))
+        return {key: values[key] for key, _ in self.lets}
+
+    def overlay(self, chosen):
+        """Tables of a run's overlay. Throws Mistake."""
         out = {}
-        for name, value in values.items():
+        for name, value in {**chosen, **self.computed(chosen)}.items():
             if path := self.target(name):
                 if isinstance(self.tables.get(path[0]), list) and path[0] not in out:
                     out[path[0]] = copy.deepcopy(self.tables[path[0]])  # an overlay replaces a list as a whole

@@ -97,8 +97,13 @@ class Clump(unittest.TestCase):
     def test_mistakes_are_named(self):
         with tempfile.TemporaryDirectory() as folder:
             write(pathlib.Path(folder, "open.stl"), box(1, 1, 1)[:-1])
+            write(pathlib.Path(folder, "closed.stl"), box(1, 1, 1))
+            pathlib.Path(folder, "closed-3.txt").write_text("mine\n")
             for words, said in ((["none.stl", "3"], "is no file"), (["open.stl", "3"], "is not closed"),
-                                (["open.stl", "0"], "at least one sphere")):
+                                (["open.stl", "0"], "at least one sphere"),
+                                (["closed.stl", "3"], "closed-3.txt is there: it is not overwritten"),
+                                (["closed.stl", "3", "--out", "closed.stl"], "closed.stl is there"),
+                                (["closed.stl", "3", "--out", "open.stl/x"], "give another --out")):
                 job = make(folder, *words)
                 self.assertEqual(job.returncode, 2)
                 self.assertIn(said, job.stderr)

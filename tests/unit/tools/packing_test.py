@@ -11,11 +11,15 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 BIN = ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"
+sys.path.insert(0, str(ROOT / "tools"))
+
+from bplbm import new_scene  # noqa: E402
+
 BOX = ["--box", "0", "0.06", "0", "0.03", "--diameter", "0.002", "0.004"]
 
 
-def make(folder, *more):
-    return subprocess.run([sys.executable, "-m", "bplbm.packing", "--out", "p", *BOX, *more],
+def make(folder, *more, force=True):
+    return subprocess.run([sys.executable, "-m", "bplbm.packing", "--out", "p", *BOX, *more, *(["--force"] if force else [])],
                           env={**os.environ, "PYTHONPATH": str(ROOT / "tools")}, cwd=folder, capture_output=True, text=True, check=False, timeout=100)
 
 
@@ -186,6 +190,38 @@ probe_every = 0.005
             self.assertIn(f"{name} is there and no packing", job.stderr)
             self.assertEqual(path.read_text(), text)
             path.unlink()
+
+    def test_an_earlier_packing_is_replaced_by_force_only(self):
+        script = pathlib.Path(self.folder.name, "p.liggghts")
+        self.assertEqual(make(self.folder.name, "--count", "10", force=False).returncode, 0)
+        before = script.read_text()
+        self.assertNotIn("--force", before)
+        job = make(self.folder.name, "--count", "12", force=False)
+        self.assertEqual((job.returncode, script.read_text()), (2, before))
+        self.assertIn("p.liggghts holds another packing, made with --out p --box", job.stderr)
+        self.assertEqual(make(self.folder.name, "--count", "10", force=False).returncode, 0)  # the same
+        self.assertEqual(make(self.folder.name, "--count", "12").returncode, 0)
+        self.assertIn("# 12 discs", script.read_text())
+        script.unlink()
+        self.assertIn("p.csv is there without p.liggghts", make(self.folder.name, "--count", "12", force=False).stderr)
+
+    def test_the_grains_of_a_new_scene_are_named(self):
+        path = pathlib.Path(self.folder.name, "p.liggghts")
+        path.write_text(new_scene.packing([([0.0, 0.0], 1e-3)], 2))
+        job = make(self.folder.name, "--count", "10", force=False)
+        self.assertEqual(job.returncode, 2)
+        self.assertIn("p.liggghts holds the grains that tools/new made; --force replaces them", job.stderr)
+        self.assertEqual(make(self.folder.name, "--count", "10").returncode, 0)
+
+    def test_its_folder_is_made_before_anything_is_computed(self):
+        job = make(self.folder.name, "--count", "10", "--out", "new/q")
+        self.assertEqual(job.returncode, 0, job.stderr)
+        self.assertIn("10 discs move apart", job.stdout)
+        self.assertTrue(pathlib.Path(self.folder.name, "new", "q.csv").exists())
+        pathlib.Path(self.folder.name, "file").write_text("")
+        job = make(self.folder.name, "--count", "10", "--out", "file/q")
+        self.assertEqual((job.returncode, job.stdout), (2, ""))
+        self.assertIn("give another --out", job.stderr)
 
     def test_liggghts_reads_and_bonds_it(self):
         self.assertEqual(make(self.folder.name, "--fraction", "0.8", "--periodic", "x").returncode, 0)

@@ -1,6 +1,8 @@
 """What tools/sweep plans, keeps and writes; the runs are pretended."""
 
+import contextlib
 import csv
+import io
 import json
 import pathlib
 import re
@@ -92,7 +94,7 @@ out = pathlib.Path(words[words.index("--out") + 1])
 overlay = pathlib.Path(words[words.index("--overlay") + 1]).read_text()
 out.mkdir(exist_ok=True)
 (out / ".bplbm").write_text("")
-density = float(overlay.split("=")[1])
+density = float((overlay + "density = 1").split("density = ")[1].split()[0])
 open("started", "a").write(f"{density:g} ")
 if density == 13:
     sys.exit("lbm | error | unlucky <number>")
@@ -117,11 +119,13 @@ class Command(unittest.TestCase):
     def main(self, *words):
         words = ["sweep", str(self.folder / "sand"), "--out", str(self.out), *words]
         with mock.patch.object(sweep, "TOOLS", self.folder), mock.patch.object(sys, "argv", words), \
-                mock.patch("sys.stdout"), mock.patch("sys.stderr"):
+                contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said):
             try:
                 return sweep.main()
             except SystemExit as end:
                 return end.code
+            finally:
+                self.said = said.getvalue()
 
     def started(self):
         path = self.folder / "started"
@@ -139,9 +143,57 @@ class Command(unittest.TestCase):
         self.assertEqual(self.main("--set", "fluid.density=1,2,3"), 0)
         self.assertEqual(self.started(), ["3"])
         self.assertEqual([row["speed [m/s]"] for row in self.rows()], ["2.0", "4.0", "6.0"])
-        (self.folder / "sand" / "scene.toml").write_text("[fluid]\ndensity = 1.5\n")
+
+    def kept(self, number=1):
+        """Values of the results in the table of an earlier sweep."""
+        with open(self.out.with_name(f"out.{number}") / "sweep.csv") as file:
+            return [row["speed [m/s]"] for row in csv.DictReader(file)]
+
+    def test_an_earlier_sweep_is_kept_where_the_scene_or_an_option_is_another(self):
         self.main("--set", "fluid.density=1,2")
-        self.assertEqual(self.started(), ["1", "2"])  # the scene is another
+        self.started()
+        (self.folder / "sand" / "scene.toml").write_text("[fluid]\ndensity = 1.5\n")
+        self.main("--set", "fluid.density=1")
+        self.assertEqual((self.started(), self.kept()), (["1"], ["2.0", "4.0"]))
+        self.assertEqual(len(self.rows()), 1)
+        self.assertIn(f"sweep | kept | the earlier sweep in {self.out} is now {self.out}.1", self.said)
+        self.main("--set", "fluid.density=1", "--until", "0.5")
+        self.assertEqual((self.started(), self.kept(2)), (["1"], ["2.0"]))
+        (self.folder / "sand" / "scene.toml").write_text('[fluid]\ndensity = 1.5\n[grains]\nfile = "grains.csv"\n')
+        for text in ("1", "2", "2"):  # a file that the scene names is part of it
+            (self.folder / "sand" / "grains.csv").write_text(text)
+            self.main("--set", "fluid.density=1", "--until", "0.5")
+        self.assertEqual((self.started(), self.kept(4)), (["1", "1"], ["2.0"]))
+        self.main("--set", "fluid.density=13", "--until", "0.5")  # one that fails, and then nothing is lost by another scene
+        self.main("--set", "fluid.density=1", "--until", "0.5")
+        self.assertFalse(self.out.with_name("out.5").exists())
+
+    def test_an_expression_that_is_another_is_another_run(self):
+        self.main("--set", "particles.hydraulic_ratio=1", "--let", "fluid.density=2*particles.hydraulic_ratio")
+        self.main("--set", "particles.hydraulic_ratio=1", "--let", "fluid.density=3*particles.hydraulic_ratio")
+        self.assertEqual((self.started(), self.kept()), (["2", "3"], ["4.0"]))
+
+    def test_rows_of_other_values_and_keys_stay_in_the_table(self):
+        self.main("--set", "fluid.density=1,2,3")
+        self.main("--set", "fluid.density=2")
+        self.assertEqual(self.started(), ["1", "2", "3"])
+        self.assertEqual([row["fluid.density [kg/m³]"] for row in self.rows()], ["2", "1", "3"])
+        self.assertIn("2 earlier runs of other values or keys stay in the table", self.said)
+        self.main("--set", "particles.hydraulic_ratio=7")
+        self.assertEqual([(row["particles.hydraulic_ratio"], row["fluid.density [kg/m³]"]) for row in self.rows()],
+                         [("7", "1.0"), ("", "1"), ("", "2"), ("", "3")])  # 1.0 is the scene's
+
+    def test_values_of_expressions_are_columns(self):
+        self.main("--set", "a=1,2", "--let", "fluid.density=10*a")
+        self.assertEqual([(row["a"], row["fluid.density [kg/m³]"]) for row in self.rows()], [("1", "10"), ("2", "20")])
+        self.assertIn("fluid.density [kg/m³]", (self.out / "index.html").read_text())
+
+    def test_a_key_that_no_scene_has_is_refused_at_once(self):
+        for words in (["--set", "fluid.densty=1,2"], ["--set", "fluid.density=1", "--let", "fluid.densty=2"]):
+            self.assertEqual(self.main(*words, "--list"), 2)
+            self.assertIn("no scene has a key 'fluid.densty'; is it fluid.density?", self.said)
+        self.assertEqual(self.main("--set", "boundary[0].presure=1", "--list"), 2)
+        self.assertEqual(self.main("--set", "fluid.gravity=[0,-1]", "--list"), 0)
 
     def test_a_failed_run_keeps_its_reason_and_the_others_go_on(self):
         self.assertEqual(self.main("--set", "fluid.density=12,13,14"), 1)
@@ -185,7 +237,7 @@ class Command(unittest.TestCase):
 class Curves(unittest.TestCase):
     def test_are_a_line_for_each_of_the_other_values_and_a_mean_where_they_are_many(self):
         def rows(seeds):
-            return {f"{x}{s}": {"values": {"x": x, "seed": s}, "results": {"y": x + s}} for x in (1, 2) for s in range(seeds)}
+            return {f"{x}{s}": {"all": {"x": x, "seed": s}, "results": {"y": x + s}} for x in (1, 2) for s in range(seeds)}
         lines = curves(["x", "seed"], rows(2), "y", "x")
         self.assertEqual([(line.name, list(line.y)) for line in lines], [("seed 0", [1, 2]), ("seed 1", [2, 3])])
         line, = curves(["x", "seed"], rows(9), "y", "x")

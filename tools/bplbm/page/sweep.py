@@ -29,14 +29,14 @@ def plain(value):
     return " ".join(map(str, value)) if isinstance(value, list) else value
 
 
-def write_table(folder, names, rows):
-    """sweep.csv: a line a run. Returns its path."""
+def write_table(folder, varied, rows):
+    """sweep.csv: a line a run. varied: keys -> names of their columns. Returns its path."""
     path, columns = folder / "sweep.csv", columns_of(rows)
     with open(path, "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*names, *columns, "status", "reason", "run"])
+        writer.writerow([*varied.values(), *columns, "status", "reason", "run"])
         for name, row in rows.items():
-            writer.writerow([*(plain(row["values"][n]) for n in names), *(row["results"].get(c, "") for c in columns),
+            writer.writerow([*(plain(row["all"][n]) for n in varied), *(row["results"].get(c, "") for c in columns),
                              status(row)[0], row["reason"], name])
     return path
 
@@ -47,8 +47,8 @@ def is_number(value):
 
 def abscissa(names, rows):
     """The varied number with the most values, which the curves are drawn against; none without one."""
-    numeric = [n for n in names if all(is_number(row["values"][n]) for row in rows.values())]
-    return max(numeric, key=lambda n: len({row["values"][n] for row in rows.values()}), default=None)
+    numeric = [n for n in names if all(is_number(row["all"][n]) for row in rows.values())]
+    return max(numeric, key=lambda n: len({row["all"][n] for row in rows.values()}), default=None)
 
 
 def curves(names, rows, column, along):
@@ -57,8 +57,8 @@ def curves(names, rows, column, along):
     for row in rows.values():
         value = row["results"].get(column)
         if is_number(value):
-            others = ", ".join(f"{n.split('.')[-1]} {plain(row['values'][n])}" for n in names if n != along)
-            groups.setdefault(others, []).append((row["values"][along], value))
+            others = ", ".join(f"{n.split('.')[-1]} {plain(row['all'][n])}" for n in names if n != along)
+            groups.setdefault(others, []).append((row["all"][along], value))
     if len(groups) > MOST_LINES:
         groups = {f"mean of {len(groups)} series": [point for points in groups.values() for point in points]}
     lines = []
@@ -69,28 +69,28 @@ def curves(names, rows, column, along):
     return lines
 
 
-def charts(names, rows):
-    """A chart for each result that varies."""
+def charts(names, varied, rows):
+    """A chart for each result that varies, by the keys of the axes."""
     good = {name: row for name, row in rows.items() if row["results"]}
     along = abscissa(names, good) if good else None
-    if not along or len({row["values"][along] for row in good.values()}) < 2:
+    if not along or len({row["all"][along] for row in good.values()}) < 2:
         return ""
     drawn = []
     for column in columns_of(good):
         values = [row["results"].get(column) for row in good.values()]
         numbers = [v for v in values if is_number(v) and np.isfinite(v)]
         if numbers and max(numbers) > min(numbers) and column not in ("physical time [s]", "mass drift"):
-            drawn.append(line_chart(curves(names, good, column, along), along, column))
+            drawn.append(line_chart(curves(names, good, column, along), varied[along], column))
     return f'<div class="row">{"".join(drawn)}</div>'
 
 
-def write_page(folder, scene, variant, names, rows, words):
-    """index.html of a sweep. Returns its path."""
+def write_page(folder, scene, variant, names, varied, rows, words):
+    """index.html of a sweep. names: keys of the axes; varied: all keys -> names of their columns. Returns its path."""
     columns = columns_of(rows)
     lines = []
     for name, row in rows.items():
         said, color = status(row)
-        lines.append([*(plain(row["values"][n]) for n in names), Cell(f'<span class="{color}">{said}</span>', said),
+        lines.append([*(plain(row["all"][n]) for n in varied), Cell(f'<span class="{color}">{said}</span>', said),
                       *(row["results"].get(c) for c in columns), Cell(link(folder, name), name),
                       Cell(html.escape(row["reason"]) or "–", row["reason"], "long")])
     failed = sum(status(row)[1] == "bad" for row in rows.values())
@@ -98,8 +98,8 @@ def write_page(folder, scene, variant, names, rows, words):
     text = page(heading, f"<h1>{html.escape(heading)}</h1>",
                 f'<p class="soft">{html.escape(scene.heading())} · {len(rows)} runs, {failed} failed · '
                 'the same as a table: <a href="sweep.csv">sweep.csv</a></p>',
-                section("Curves", charts(names, rows)),
-                section("Runs", table([*names, "status", *columns, "run", "reason"], lines, sortable=True)),
+                section("Curves", charts(names, varied, rows)),
+                section("Runs", table([*varied.values(), "status", *columns, "run", "reason"], lines, sortable=True)),
                 section("How to repeat it", f"<pre>{html.escape(repeated('sweep', words))}</pre>"))
     path = folder / "index.html"
     path.write_text(text)
