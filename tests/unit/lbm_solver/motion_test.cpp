@@ -132,7 +132,7 @@ TEST_F(Motions, OfAHollowMeshAreRefused) {
   write_stl(folder_.path() + "/mesh.stl",
             test::box_mesh({0.004, 0.004, 0.004}, {0.016, 0.016, 0.016}));
   refused(3, "mesh = \"mesh.stl\"\nhollow = true\nmotion = \"linear\"\nvelocity = [0.001, 0, 0]",
-          {"hollow stands beside motion", "give the surface a thickness"});
+          {"hollow stands beside motion", "of one surface with a thickness"});
 }
 
 TEST_F(Motions, ThatHardlyAreMeantAreNamed) {

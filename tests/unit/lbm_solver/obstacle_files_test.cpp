@@ -201,7 +201,7 @@ TEST_F(ObstacleFiles, ABadImageIsDescribed) {
   refused(3, kRaw, {"threshold is missing", "grey_levels"});
   refused(3, raw + "grey_levels = [0, 1]", {"stands beside grey_levels"});
   refused(3, raw + "at = [0.006, 0, 0]", {"takes cells 6 … 10 along x, the box has 8"});
-  refused(3, raw + "cut_to = [5, 3, 2]", {"nothing lies between 0 and 5 in x"});
+  refused(3, raw + "cut_to = [5, 3, 2]", {"they do not fill what is between 0 and 5 in x"});
   refused(3, test::replaced(raw, "voxel = 0.001", "voxel = 0.0015"), {"is 1.5 cells"});
   for (const char* voxel : {"voxel = 5e-30", "voxel = 5e-300", "voxel = 1e30"})
     refused(3, test::replaced(raw, "voxel = 0.001", voxel), {"cells", "10000 at most"});
@@ -209,7 +209,7 @@ TEST_F(ObstacleFiles, ABadImageIsDescribed) {
           {"has 3 voxels along y, and 2 of them make a cell"});
   refused(3, raw + "[[obstacle]]\nimage = \"rock.jpg\"\nvoxel = 1\nthreshold = 1", {"rock.jpg"});
   refused(2, test::replaced(raw, "[4, 3, 2]", "[4, 6]") + "cut_to = [9, 6]",
-          {"nothing lies between"});
+          {"they do not fill what is between"});
   folder_.write("rock.npy", "no array");
   refused(3, "image = \"rock.npy\"\nvoxel = 0.001\nthreshold = 1", {"is no .npy file"});
   refused(3, raw + "dataset = \"/rock\"", {"dataset is for .h5 files"});
@@ -254,9 +254,8 @@ TEST_F(ObstacleFiles, ThatLieInEachOtherAreNamed) {
                              "on cells of both counts for both"),
             std::string::npos);
   EXPECT_EQ(said("from = [0.007, 0.0, 0.0]\nto = [0.008, 0.008, 0.008]\n"), "");  // touches
-  EXPECT_NE(
-      said("centre = [0.006, 0.004, 0.004]\ndiameter = 0.004\n").find("partly in the 1.: the"),
-      std::string::npos);
+  EXPECT_NE(said("centre = [0.006, 0.004, 0.004]\ndiameter = 0.004\n").find("overlaps the 1.: the"),
+            std::string::npos);
   EXPECT_EQ(said("centre = [0.004, 0.004, 0.004]\ndiameter = 0.0075\nhollow = true\n"), "");
   const auto of_blocks = [&](const std::string& first, const std::string& second) {
     return warnings_of(read(3, first + "[[obstacle]]\n" + second));
@@ -269,7 +268,7 @@ TEST_F(ObstacleFiles, ThatLieInEachOtherAreNamed) {
   EXPECT_EQ(of_blocks(block, "from = [0.0, 0.0, 0.0]\nto = [0.006, 0.002, 0.008]\n"), "");
   // a ball before the block, and a ball that is a mesh beside it
   EXPECT_NE(of_blocks("centre = [0.004, 0.004, 0.004]\ndiameter = 0.006\n", block)
-                .find("partly in the 1., and the 2. is a block"),
+                .find("overlaps the 1., and the 2. is a block"),
             std::string::npos);
 }
 
