@@ -11,24 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .ball_union import of_spheres
 from .project import tool
 from .shapes import read_stl
-
-def union_moments(centres, radii, across=160):
-    """Volume of a union of spheres, its centroid, and the mean of x xᵀ, by points: to 1e-4."""
-    lo, hi = (centres - radii[:, None]).min(0), (centres + radii[:, None]).max(0)
-    step = (hi - lo).max() / across
-    axes = [np.arange(lo[k] + 0.5 * step, hi[k] + 0.5 * step, step) for k in range(3)]
-    count, first, second = 0, np.zeros(3), np.zeros((3, 3))
-    for z in axes[2]:
-        layer = np.stack(np.meshgrid(axes[0], axes[1], [z], indexing="ij"), -1).reshape(-1, 3)
-        held = np.zeros(len(layer), bool)
-        for centre, radius in zip(centres, radii):
-            if abs(z - centre[2]) < radius:
-                held |= ((layer - centre)**2).sum(1) < radius**2
-        layer = layer[held]
-        count, first, second = count + len(layer), first + layer.sum(0), second + layer.T @ layer
-    return count * step**3, first / count, second / count
 
 
 @dataclass
@@ -140,12 +125,20 @@ def fill(corners, count, fineness=40):
 
 
 def grown(centres, radii, volume):
-    """Radii times the factor with which the union has that volume."""
-    low, high = 0.8, 1.6
-    for _ in range(16):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if union_moments(centres, middle * radii, 100)[0] < volume else (low, middle)
-    return 0.5 * (low + high) * radii
+    """Radii times the factor with which the union has that volume: to 1e-9 of it."""
+    low, high = 0.0, 1.0
+    while of_spheres(centres, high * radii)[0] < volume:
+        low, high = high, 2 * high
+    factor = high
+    for _ in range(60):
+        there = of_spheres(centres, factor * radii)[0]
+        if abs(there / volume - 1) < 1e-9:
+            break
+        low, high = (factor, high) if there < volume else (low, factor)
+        factor *= np.cbrt(volume / there)
+        if not low < factor < high:
+            factor = 0.5 * (low + high)
+    return factor * radii
 
 
 def report(mesh, clump):
@@ -176,8 +169,8 @@ def main():
     centres, radii = fill(corners, options.spheres, options.fineness)
     mesh = of_mesh(corners)
     radii = grown(centres, radii, mesh.volume)
-    centres = centres - union_moments(centres, radii)[1]
-    clump = Body.of_moments(*union_moments(centres, radii))
+    centres = centres - of_spheres(centres, radii)[1]
+    clump = Body.of_moments(*of_spheres(centres, radii))
     mesh.centroid = mesh.centroid - mesh.centroid  # the clump's frame is about its own
     out = options.out or options.mesh.with_name(f"{options.mesh.stem}-{len(radii)}.txt")
     out.write_text("".join(f"{x:.9g} {y:.9g} {z:.9g} {r:.9g}\n" for (x, y, z), r in zip(centres, radii)))
