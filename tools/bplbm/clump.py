@@ -7,6 +7,8 @@ surface."""
 
 import argparse
 import pathlib
+import sys
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,12 +32,10 @@ class Body:
 
 
 def of_mesh(corners):
-    """A closed surface as the sum of tetrahedra from the origin."""
+    """A closed surface as the sum of tetrahedra from the origin; one that faces inwards has a negative volume."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     parts = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
     volume = parts.sum()
-    if volume < 0:  # normals that point inwards
-        return of_mesh(corners[:, ::-1])
     total = a + b + c
     first = (parts[:, None] * total).sum(0) / 4
     second = np.einsum("t,ti,tj->ij", parts, total, total)
@@ -75,7 +75,8 @@ def inside(corners, points):
 def distance(corners, points):
     """Of points to the nearest triangle."""
     nearest = np.full(len(points), np.inf)
-    for a, b, c in corners:
+    for k in progress(len(corners), "triangles measured"):
+        a, b, c = corners[k]
         nearest = np.minimum(nearest, _to_triangle(points, a, b, c))
     return nearest
 
@@ -98,6 +99,16 @@ def _to_triangle(p, a, b, c):
     return np.where(over, np.abs((p - a) @ normal), edges)
 
 
+def progress(count, what, every=2.0, out=sys.stderr):
+    """Counts to a number, and says how far it has come every so many seconds [s]; of what is done sooner nothing."""
+    said = time.monotonic()
+    for k in range(count):
+        if time.monotonic() - said >= every:
+            said = time.monotonic()
+            print(f"clump | {k} of {count} {what}", file=out, flush=True)
+        yield k
+
+
 def fill(corners, count, fineness=40):
     """@return  centres and radii. @param fineness  points along the longest axis where a sphere may be"""
     lo, hi = corners.reshape(-1, 3).min(0), corners.reshape(-1, 3).max(0)
@@ -108,7 +119,7 @@ def fill(corners, count, fineness=40):
     points = np.vstack([points, of_mesh(corners).centroid])
     radius = distance(corners, points)
     filled, centres, radii = np.zeros(len(points), bool), [], []
-    for _ in range(count):
+    for _ in progress(count, "spheres placed"):
         # the largest that fit, and those beside what is empty: the best of four hundred
         empty = np.flatnonzero(~filled)
         if not len(empty):
@@ -163,11 +174,17 @@ def main():
         parser.error("give at least one sphere, and a fineness of at least 8")
     if not options.mesh.is_file():
         parser.error(f"{options.mesh} is no file; give a closed surface as .stl")
-    corners = read_stl(options.mesh)
+    try:
+        corners = read_stl(options.mesh)
+    except ValueError as error:
+        parser.error(str(error))
     if not is_closed(corners):
         parser.error(f"{options.mesh} is not closed: it does not say what is inside; close it")
-    centres, radii = fill(corners, options.spheres, options.fineness)
     mesh = of_mesh(corners)
+    if not mesh.volume > 0:
+        parser.error(f"{options.mesh} has triangles that face inwards: it encloses less than nothing; turn them, so that the corners "
+                     "of each run anticlockwise as seen from outside")
+    centres, radii = fill(corners, options.spheres, options.fineness)
     radii = grown(centres, radii, mesh.volume)
     centres = centres - of_spheres(centres, radii)[1]
     clump = Body.of_moments(*of_spheres(centres, radii))

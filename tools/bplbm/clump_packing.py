@@ -4,6 +4,8 @@ push each other away until those of different bodies overlap no more."""
 
 from dataclasses import dataclass
 import pathlib
+import sys
+import time
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from bplbm.ball_union import of_discs, of_spheres
 from bplbm.project import tool
 
 LISTS, PATIENCE = 1000, 2000  # lists of neighbours, at most, and steps with one
+SAYS_EVERY = 2.0  # seconds: how far it has come
 
 
 @dataclass
@@ -133,12 +136,15 @@ def relax(bodies, overlap):
     """Moves them downhill [FIRE: Bitzek and others, Phys. Rev. Lett. 97 (2006) 170201] until the largest overlap over
     the smaller radius is within the bound, or no more is gained. Returns what is left."""
     skin = 0.3 * bodies.radii.min()
-    left = np.inf
-    for _ in range(LISTS):
+    left, said = np.inf, time.monotonic()
+    for k in range(LISTS):
         pairs, way = bodies.neighbours(2 * skin), 0.0
         left = bodies.worst(pairs)
         if left <= overlap:
             return left
+        if time.monotonic() - said >= SAYS_EVERY:
+            said = time.monotonic()
+            print(f"packing | largest overlap {left:.2g} radii, wanted {overlap:.2g}, after {k} lists of neighbours", file=sys.stderr, flush=True)
         v, w = np.zeros_like(bodies.middles), np.zeros((len(bodies.middles), 3))
         step, mix, downhill = 0.2, 0.1, 0
         for _ in range(PATIENCE):

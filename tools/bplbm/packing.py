@@ -177,7 +177,7 @@ def separations(places, sizes, args):
 def relax(args, places, sizes):
     """Runs LIGGGHTS until the overlaps are within the bound. Returns places and what is left."""
     with tempfile.TemporaryDirectory() as folder:
-        for _ in range(ROUNDS // 10):
+        for turn in range(ROUNDS // 10):
             text = script(args, places, sizes) + f"run {10 * STEPS}\n"
             pathlib.Path(folder, "in.packing").write_text(text)
             job = subprocess.run([BIN / "liggghts", "-in", "in.packing", "-screen", "none"], cwd=folder, env=environment(shared=False),
@@ -193,6 +193,8 @@ def relax(args, places, sizes):
                 left = separations(places, sizes, args)
                 if left <= args.overlap:
                     return places, left
+            print(f"packing | largest overlap {left:.2g} radii, wanted {args.overlap:.2g}, after {turn + 1} of {ROUNDS // 10} rounds",
+                  file=sys.stderr, flush=True)
     return places, left
 
 

@@ -1,5 +1,6 @@
 """tools/make_clump: moments of meshes and unions, what it fills, what it refuses."""
 
+import io
 import os
 import pathlib
 import subprocess
@@ -57,7 +58,7 @@ class Moments(unittest.TestCase):
         self.assertAlmostEqual(body.volume, 6)
         np.testing.assert_allclose(body.centroid, [0.3, -0.2, 0.1])
         np.testing.assert_allclose(body.inertia, np.diag([1 + 9, 4 + 9, 4 + 1]) / 12, atol=1e-12)
-        self.assertAlmostEqual(clump.of_mesh(box(2, 1, 3)[:, ::-1]).volume, 6)  # normals inwards
+        self.assertAlmostEqual(clump.of_mesh(box(2, 1, 3)[:, ::-1]).volume, -6)  # normals inwards
 
     def test_of_two_spheres(self):
         turn = clump_packing.turns(np.array([[0.3, -0.9, 0.5]]))[0]
@@ -127,11 +128,27 @@ class Clump(unittest.TestCase):
     def test_mistakes_are_named(self):
         with tempfile.TemporaryDirectory() as folder:
             write(pathlib.Path(folder, "open.stl"), box(1, 1, 1)[:-1])
-            for words, said in ((["none.stl", "3"], "is no file"), (["open.stl", "3"], "is not closed"),
+            write(pathlib.Path(folder, "inward.stl"), box(1, 1, 1)[:, ::-1])
+            whole = pathlib.Path(folder, "open.stl").read_text()
+            for name, text in (("cut", whole[:whole.rindex("vertex")]), ("line", whole[:whole.rindex("vertex") + 9]), ("none-at-all", "solid s\n")):
+                pathlib.Path(folder, f"{name}.stl").write_text(text)
+            pathlib.Path(folder, "binary.stl").write_bytes(b"\0" * 80 + (12).to_bytes(4, "little") + b"\0" * 77)
+            for words, said in ((["cut.stl", "3"], "holds 32 corners, which are no triangles"), (["line.stl", "3"], "not three numbers"),
+                                (["none-at-all.stl", "3"], "no 'facet'"), (["binary.stl", "3"], "announces 12 facets, 684 bytes"),
+                                (["inward.stl", "3"], "face inwards"), (["none.stl", "3"], "is no file"), (["open.stl", "3"], "is not closed"),
                                 (["open.stl", "0"], "at least one sphere")):
                 job = make(folder, *words)
                 self.assertEqual(job.returncode, 2)
                 self.assertIn(said, job.stderr)
+                self.assertNotIn("Traceback", job.stderr)
+
+    def test_long_work_says_how_far_it_has_come(self):
+        out = io.StringIO()
+        self.assertEqual(list(clump.progress(3, "spheres", every=0, out=out)), [0, 1, 2])
+        self.assertIn("clump | 2 of 3 spheres\n", out.getvalue())
+        out = io.StringIO()
+        list(clump.progress(3, "spheres", out=out))
+        self.assertEqual(out.getvalue(), "")
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ from bplbm import pictures, result, run as launcher  # noqa: E402
 from bplbm.page import flow, histories, picture  # noqa: E402
 from bplbm.page.failed import write_failed_page  # noqa: E402
 from bplbm.page.run import write_page  # noqa: E402
-from bplbm.quantities import default_quantities, of_particles  # noqa: E402
+from bplbm.quantities import default_quantities, not_told, of_particles  # noqa: E402
 from bplbm.reading import Table  # noqa: E402
 from bplbm.results import Run  # noqa: E402
 from bplbm.scenes import Scene  # noqa: E402
@@ -182,8 +182,20 @@ class Page(Output):
         self.assertNotIn("permeability along y", found)
         last = run.frames()[-1][1]
         with h5py.File(self.out / "fields.h5", "a") as f:
-            f[last].attrs["flux_x"] = 1e-3  # it still grows
+            f[last].attrs["flux_x"] = 1e-3  # it still changes
         self.assertNotIn("permeability along x", [q["name"] for q in default_quantities(run)])
+        self.assertRegex(not_told(run)[0], "No permeability along x: not steady yet: .* changed by 50 % from ")
+        summary = json.loads((self.out / "summary.json").read_text())
+        parameters = {**summary["parameters"], **run.parameters}
+        (self.out / "summary.json").write_text(json.dumps({**summary, "parameters": parameters}))
+        self.assertIn("No permeability along x: not steady yet", self.page())
+        with h5py.File(self.out / "fields.h5", "a") as f:
+            for name in set(f) - {last}:
+                del f[name]
+        self.assertIn("one frame does not say", not_told(run)[0])
+        run.summary["ending"] = "steady: the velocity changes by less than 1e-05 a turnover"
+        self.assertIn("permeability along x", [q["name"] for q in default_quantities(run)])
+        self.assertEqual(not_told(run), [])
 
     def test_both_waiting_at_once_is_said(self):
         self.assertIsNone(launcher.hint_of_waiting(0.5, 9.6, 10.0))  # in turns
