@@ -23,7 +23,7 @@ from bplbm.page import flow, histories, picture  # noqa: E402
 from bplbm.page.failed import write_failed_page  # noqa: E402
 from bplbm.page.run import write_page  # noqa: E402
 from bplbm.quantities import default_quantities, not_told, of_particles  # noqa: E402
-from bplbm.reading import Table  # noqa: E402
+from bplbm.reading import PARTICLE, Table  # noqa: E402
 from bplbm.results import Run  # noqa: E402
 from bplbm.scenes import Scene  # noqa: E402
 
@@ -168,6 +168,12 @@ class Page(Output):
             for frame in f.values():
                 frame["particle_carrier"] = np.array([-1.0, 1.0])  # the second is a sphere of the first
         self.assertEqual(default_quantities(run)[1]["value"], 1)
+        before = self.page().count('stroke="#6b5d43"')
+        with h5py.File(self.out / "fields.h5", "a") as f:
+            for frame in f.values():
+                frame["particles"][0, PARTICLE[2].index("radius")] = 0.0
+        self.assertEqual(self.page().count('stroke="#6b5d43"'), before - 1)
+        self.assertEqual(len(flow.read_planes(run)[0].discs), 1)
 
     def test_a_driven_flow_past_solids_has_its_permeability(self):
         run = self.write(2)
@@ -263,6 +269,14 @@ class Failed(Output):
             for part in ("exit code 3", "numerics", "after 0.1 s of flow", "<b>interval 7: the fluid moves at &lt;9&gt; m/s</b>",
                          "Set-up", "Flow until then", "Histories until then", "force of the fluid in", "&lt;too fast&gt;", "tools/run sand"):
                 self.assertIn(part, text, dimensions)
+
+    def test_a_signal_is_said(self):
+        self.write(2)
+        (self.out / "error.log").write_text("Primary job  terminated normally, but 1 process returned\n-----\n")
+        (self.out / "lbm.log").write_text("duration     1 s\n\nending       stopped by a signal\n")
+        self.assertIn("<b>stopped by a signal</b>", self.failed_page())
+        (self.out / "error.log").write_text("liggghts | error | lost atoms\n")
+        self.assertIn("<b>lost atoms</b>", self.failed_page())
 
     def test_needs_nothing_but_the_scene(self):
         self.write(2)
