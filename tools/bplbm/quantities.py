@@ -48,9 +48,11 @@ def fluxes(run):
 
 
 def why_unsteady(run, axis, times, means):
-    """Why a flow cannot be called steady; "" where it can: where the run ended for it (run.steady_below), or where it hardly
-    changed between the last two frames."""
+    """Why a flow cannot be called steady; "" where it can: where the run ended for it (run.steady_below), or where the force
+    on the obstacles in the last half of the run, or the flux between the last two frames, hardly changed."""
     if run.summary.get("ending", "").startswith(STEADY_END):
+        return ""
+    if force_is_steady(run, axis):
         return ""
     if len(means) < 2:
         return "one frame does not say whether the flow is steady; give run.steady_below, or a smaller output.fields_every"
@@ -59,6 +61,19 @@ def why_unsteady(run, axis, times, means):
         return ""
     return (f"not steady yet: the mean velocity along {axis} changed by {100 * change:.2g} % from {times[0]:.6g} s to {times[1]:.6g} s, "
             f"the last two frames, more than {100 * STEADY:g} %; run longer, or give run.steady_below or a smaller output.fields_every")
+
+
+def force_is_steady(run, axis):
+    """Whether the force of the fluid on all obstacles of a Run together stays the same in the last half of it: from drag that
+    nears its end as 1 - exp(-t/τ) the flux then differs by 1e-4. False where obstacles.csv has too few rows."""
+    path = run.folder / "obstacles.csv"
+    if not path.is_file():
+        return False
+    table = read_table(path)
+    times, which = np.unique(table["time"], return_inverse=True)
+    late = times >= 0.5 * run.summary["physical_seconds"]
+    force = np.bincount(which, table[f"f{axis}"], len(times))[late]
+    return np.count_nonzero(late) > 2 and np.ptp(force) < STEADY * np.abs(force).max()
 
 
 def of_flux(run):

@@ -199,6 +199,12 @@ class Page(Output):
             for name in set(f) - {last}:
                 del f[name]
         self.assertIn("one frame does not say", not_told(run)[0])
+        end = run.summary["physical_seconds"]
+        for slowness, steady in ((0.05, True), (0.5, False)):  # of the drag, over the time of the run
+            rows = [f"{part * end},{k},{1 - np.exp(-part / slowness)},0" for part in np.linspace(0, 1, 11) for k in (1, 2)]
+            (self.out / "obstacles.csv").write_text("\n".join(["time,id,fx,fy", *rows]) + "\n")
+            self.assertEqual("permeability along x" in [q["name"] for q in default_quantities(run)], steady)
+            self.assertEqual(not_told(run) == [], steady)
         run.summary["ending"] = "steady: the velocity changes by less than 1e-05 a turnover"
         self.assertIn("permeability along x", [q["name"] for q in default_quantities(run)])
         self.assertEqual(not_told(run), [])
