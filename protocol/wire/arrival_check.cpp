@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kRoundOff = 1e-9;  // of numbers that come through a script's decimal text
 constexpr double kSlack = 1e-6;     // of ranges and masses
+constexpr double kUnion = 1e-4;     // of a clump's density: its volume is measured (ball_union.cpp)
 constexpr double kGrowth = 0.1;     // of a radius between two exchanges
 
 std::string text(const Vec3& v) {
@@ -94,7 +95,7 @@ void ArrivalCheck::shape(const Shape& s, const Shape* known, bool clump,
   if (s.type < 1)
     refuse("particle {}: type {} at interval {}: types begin at 1", s.id, s.type, interval);
   if (!clump) sizes(s, interval);
-  if (!part) inertia(s, clump ? s.volume : agreed_volume(s.radius), interval);
+  if (!part) inertia(s, clump, interval);
   if (known && known->epoch == s.epoch &&
       std::abs(s.radius - known->radius) > kGrowth * known->radius)
     refuse(
@@ -105,8 +106,8 @@ void ArrivalCheck::shape(const Shape& s, const Shape* known, bool clump,
 
 namespace {
 
-bool within(double value, const std::optional<Range>& range) {
-  const double slack = range ? kSlack * range->hi : 0.0;
+bool within(double value, const std::optional<Range>& range, double part = kSlack) {
+  const double slack = range ? part * range->hi : 0.0;
   return !range || (value >= range->lo - slack && value <= range->hi + slack);
 }
 
@@ -131,8 +132,10 @@ void ArrivalCheck::sizes(const Shape& s, std::int64_t interval) const {
 }
 
 /// Of what has a mass: a grain, or a clump.
-void ArrivalCheck::inertia(const Shape& s, double volume, std::int64_t interval) const {
-  if (const double density = s.mass / volume; !within(density, fluid_.density))
+void ArrivalCheck::inertia(const Shape& s, bool clump, std::int64_t interval) const {
+  const double volume = clump ? s.volume : agreed_volume(s.radius);
+  const double density = s.mass / volume;
+  if (!within(density, fluid_.density, clump ? kUnion : kSlack))
     refuse(
         "particle {}: density {:.6g} kg/m³ at interval {} (mass {:.6g} kg in {:.6g} m³), the "
         "scene's particles.density says {:.6g} … {:.6g} kg/m³; correct one of them{}",

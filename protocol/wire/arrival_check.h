@@ -71,7 +71,7 @@ class ArrivalCheck {
   void examine(const Particle& now, const State* before, std::int64_t interval) const;
   double agreed_volume(double radius) const;
   void sizes(const Shape& shape, std::int64_t interval) const;
-  void inertia(const Shape& shape, double volume, std::int64_t interval) const;
+  void inertia(const Shape& shape, bool clump, std::int64_t interval) const;
 
   static constexpr double kOutOfPlane = 1e-6;  // of a radius, an interval
 

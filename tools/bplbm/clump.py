@@ -7,28 +7,15 @@ surface."""
 
 import argparse
 import pathlib
+import sys
+import time
 from dataclasses import dataclass
 
 import numpy as np
 
+from .ball_union import of_spheres
 from .project import tool
 from .shapes import read_stl
-
-def union_moments(centres, radii, across=160):
-    """Volume of a union of spheres, its centroid, and the mean of x xᵀ, by points: to 1e-4."""
-    lo, hi = (centres - radii[:, None]).min(0), (centres + radii[:, None]).max(0)
-    step = (hi - lo).max() / across
-    axes = [np.arange(lo[k] + 0.5 * step, hi[k] + 0.5 * step, step) for k in range(3)]
-    count, first, second = 0, np.zeros(3), np.zeros((3, 3))
-    for z in axes[2]:
-        layer = np.stack(np.meshgrid(axes[0], axes[1], [z], indexing="ij"), -1).reshape(-1, 3)
-        held = np.zeros(len(layer), bool)
-        for centre, radius in zip(centres, radii):
-            if abs(z - centre[2]) < radius:
-                held |= ((layer - centre)**2).sum(1) < radius**2
-        layer = layer[held]
-        count, first, second = count + len(layer), first + layer.sum(0), second + layer.T @ layer
-    return count * step**3, first / count, second / count
 
 
 @dataclass
@@ -45,12 +32,10 @@ class Body:
 
 
 def of_mesh(corners):
-    """A closed surface as the sum of tetrahedra from the origin."""
+    """A closed surface as the sum of tetrahedra from the origin; one that faces inwards has a negative volume."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     parts = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
     volume = parts.sum()
-    if volume < 0:  # normals that point inwards
-        return of_mesh(corners[:, ::-1])
     total = a + b + c
     first = (parts[:, None] * total).sum(0) / 4
     second = np.einsum("t,ti,tj->ij", parts, total, total)
@@ -90,7 +75,8 @@ def inside(corners, points):
 def distance(corners, points):
     """Of points to the nearest triangle."""
     nearest = np.full(len(points), np.inf)
-    for a, b, c in corners:
+    for k in progress(len(corners), "triangles measured"):
+        a, b, c = corners[k]
         nearest = np.minimum(nearest, _to_triangle(points, a, b, c))
     return nearest
 
@@ -113,6 +99,16 @@ def _to_triangle(p, a, b, c):
     return np.where(over, np.abs((p - a) @ normal), edges)
 
 
+def progress(count, what, every=2.0, out=sys.stderr):
+    """Counts to a number, and says how far it has come every so many seconds [s]; of what is done sooner nothing."""
+    said = time.monotonic()
+    for k in range(count):
+        if time.monotonic() - said >= every:
+            said = time.monotonic()
+            print(f"clump | {k} of {count} {what}", file=out, flush=True)
+        yield k
+
+
 def fill(corners, count, fineness=40):
     """@return  centres and radii. @param fineness  points along the longest axis where a sphere may be"""
     lo, hi = corners.reshape(-1, 3).min(0), corners.reshape(-1, 3).max(0)
@@ -123,7 +119,7 @@ def fill(corners, count, fineness=40):
     points = np.vstack([points, of_mesh(corners).centroid])
     radius = distance(corners, points)
     filled, centres, radii = np.zeros(len(points), bool), [], []
-    for _ in range(count):
+    for _ in progress(count, "spheres placed"):
         # the largest that fit, and those beside what is empty: the best of four hundred
         empty = np.flatnonzero(~filled)
         if not len(empty):
@@ -140,12 +136,20 @@ def fill(corners, count, fineness=40):
 
 
 def grown(centres, radii, volume):
-    """Radii times the factor with which the union has that volume."""
-    low, high = 0.8, 1.6
-    for _ in range(16):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if union_moments(centres, middle * radii, 100)[0] < volume else (low, middle)
-    return 0.5 * (low + high) * radii
+    """Radii times the factor with which the union has that volume: to 1e-9 of it."""
+    low, high = 0.0, 1.0
+    while of_spheres(centres, high * radii)[0] < volume:
+        low, high = high, 2 * high
+    factor = high
+    for _ in range(60):
+        there = of_spheres(centres, factor * radii)[0]
+        if abs(there / volume - 1) < 1e-9:
+            break
+        low, high = (factor, high) if there < volume else (low, factor)
+        factor *= np.cbrt(volume / there)
+        if not low < factor < high:
+            factor = 0.5 * (low + high)
+    return factor * radii
 
 
 def report(mesh, clump):
@@ -171,7 +175,10 @@ def main():
         parser.error("give at least one sphere, and a fineness of at least 8")
     if not options.mesh.is_file():
         parser.error(f"{options.mesh} is no file; give a closed surface as .stl")
-    corners = read_stl(options.mesh)
+    try:
+        corners = read_stl(options.mesh)
+    except ValueError as error:
+        parser.error(str(error))
     if not is_closed(corners):
         parser.error(f"{options.mesh} is not closed: it does not say what is inside; close it")
     out = options.out or options.mesh.with_name(f"{options.mesh.stem}-{options.spheres}.txt")
@@ -181,11 +188,14 @@ def main():
         out.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         parser.error(f"{out.parent}: {error.strerror}; give another --out")
-    centres, radii = fill(corners, options.spheres, options.fineness)
     mesh = of_mesh(corners)
+    if not mesh.volume > 0:
+        parser.error(f"{options.mesh} has triangles that face inwards: it encloses less than nothing; turn them, so that the corners "
+                     "of each run anticlockwise as seen from outside")
+    centres, radii = fill(corners, options.spheres, options.fineness)
     radii = grown(centres, radii, mesh.volume)
-    centres = centres - union_moments(centres, radii)[1]
-    clump = Body.of_moments(*union_moments(centres, radii))
+    centres = centres - of_spheres(centres, radii)[1]
+    clump = Body.of_moments(*of_spheres(centres, radii))
     mesh.centroid = mesh.centroid - mesh.centroid  # the clump's frame is about its own
     out.write_text("".join(f"{x:.9g} {y:.9g} {z:.9g} {r:.9g}\n" for (x, y, z), r in zip(centres, radii)))
     print("\n".join(report(mesh, clump)))

@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 
-from bplbm.clump import union_moments
+from bplbm.ball_union import of_discs, of_spheres
 from bplbm.project import tool
 
 SILENCE = 5.0  # s from one line of progress to the next
@@ -21,18 +21,6 @@ class Shape:
     places: np.ndarray  # [sphere][dimension]
     radii: np.ndarray
     excess: float       # sum of the volumes of its spheres over that of the union
-
-
-def union_area(centres, radii, across=1000):
-    """Area of a union of discs and its centroid, by points: to 1e-3."""
-    low, high = (centres - radii[:, None]).min(0), (centres + radii[:, None]).max(0)
-    step = (high - low).max() / across
-    axes = [np.arange(low[k] + 0.5 * step, high[k] + 0.5 * step, step) for k in range(2)]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 2)
-    held = np.zeros(len(points), bool)
-    for centre, radius in zip(centres, radii):
-        held |= ((points - centre)**2).sum(1) < radius**2
-    return held.sum() * step**2, points[held].mean(0)
 
 
 def read_shape(path, dimension):
@@ -49,10 +37,10 @@ def read_shape(path, dimension):
         raise ValueError(f"{path}: a clump of discs has z = 0; give --box six numbers for one of spheres")
     places, radii = rows[:, :dimension], rows[:, 3]
     if dimension == 2:
-        volume, middle = union_area(places, radii)
+        volume, middle, _ = of_discs(places, radii)
         unit, parts = np.sqrt(4 * volume / np.pi), np.pi * radii**2
     else:
-        volume, middle, _ = union_moments(places, radii)
+        volume, middle, _ = of_spheres(places, radii)
         unit, parts = np.cbrt(6 * volume / np.pi), 4 / 3 * np.pi * radii**3
     return Shape((places - middle) / unit, radii / unit, parts.sum() / volume)
 

@@ -287,7 +287,7 @@ def write(args, places, sizes, clumps=None, excess=1.0):
     count = f"{clumps[0][-1]} clumps of {len(sizes) // clumps[0][-1]}" if clumps else f"{len(sizes)} {kind(args)}"
     lines = [f"# {count}{MADE_BY} {own_words()}"]
     if clumps:
-        lines += [*HOW_CLUMPS_MOVE.splitlines(), f"variable clump_density equal {density}/{excess:.9g}"]
+        lines += [*HOW_CLUMPS_MOVE.splitlines(), f"variable clump_density equal {density}/{excess:.12g}"]
         density = "${clump_density}"
     for i, (place, size) in enumerate(zip(places, sizes, strict=True)):
         lines.append(f"create_atoms 1 single {numbers([*place, 0.0][:3])} units box")
@@ -333,8 +333,8 @@ def main():
           f"-> {args.out}.liggghts, {args.out}.csv")
     if args.clump:
         ends_of = packing.diameters.min(), packing.diameters.max()
-        print(f"packing | their {len(packing.diameters)} {'discs' if d == 2 else 'spheres'} have diameters of {ends_of[0]:.6g} … "
-              f"{ends_of[1]:.6g} m: particles.diameter of a scene")
+        print(f"packing | their {len(packing.diameters)} {'discs' if d == 2 else 'spheres'} have diameters of {ends_of[0]:.9g} … "
+              f"{ends_of[1]:.9g} m: particles.diameter of a scene")
 
 
 if __name__ == "__main__":

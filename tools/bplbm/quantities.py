@@ -4,9 +4,11 @@ its flux and the permeability."""
 import h5py
 import numpy as np
 
+from bplbm.early_end import STEADY as STEADY_END
 from bplbm.results import quantity, read_table
 
 ALONE = -1  # the carrier of what is no part of a clump
+YIELDS = "share_at_rest_bound"  # a parameter of fluids whose viscosity is not one number
 STEADY = 0.01  # part by which a flux changes from the frame before the last to the last
 
 
@@ -25,27 +27,75 @@ def default_quantities(run):
     return found + of_flux(run)
 
 
+def drives(run):
+    """Steady force on the mass [m/s²] of a Run along each axis that has one, a pressure difference across periodic sides
+    included."""
+    p = run.parameters
+    found = {axis: p.get(f"body_force_{axis}", 0.0) + p.get(f"pressure_jump_{axis}", 0.0) / (p.get("density", 1.0) * p.get(f"box_{axis}", 1.0))
+             for axis in "xyz"}
+    return {axis: drive for axis, drive in found.items() if drive}
+
+
+def fluxes(run):
+    """Times [s] of the last two frames of a Run, or of less, and along each driven axis the mean velocities over the box
+    there [m/s]; of a scene without covered cells no axis."""
+    driven = drives(run)
+    if not driven or not (run.folder / "fields.h5").is_file():
+        return [], {}
+    frames = run.frames()[-2:]
+    means = [dict(zip("xyz", run.flux(name))) for _, name in frames]
+    return [time for time, _ in frames], {axis: [m[axis] for m in means if axis in m] for axis in driven if means and axis in means[-1]}
+
+
+def why_unsteady(run, axis, times, means):
+    """Why a flow cannot be called steady; "" where it can: where the run ended for it (run.steady_below), or where the force
+    on the obstacles in the last half of the run, or the flux between the last two frames, hardly changed."""
+    if run.summary.get("ending", "").startswith(STEADY_END):
+        return ""
+    if force_is_steady(run, axis):
+        return ""
+    if len(means) < 2:
+        return "one frame does not say whether the flow is steady; give run.steady_below, or a smaller output.fields_every"
+    change = abs(means[1] - means[0]) / max(abs(means[1]), abs(means[0]), 1e-300)
+    if change < STEADY:
+        return ""
+    return (f"not steady yet: the mean velocity along {axis} changed by {100 * change:.2g} % from {times[0]:.6g} s to {times[1]:.6g} s, "
+            f"the last two frames, more than {100 * STEADY:g} %; run longer, or give run.steady_below or a smaller output.fields_every")
+
+
+def force_is_steady(run, axis):
+    """Whether the force of the fluid on all obstacles of a Run together stays the same in the last half of it: from drag that
+    nears its end as 1 - exp(-t/τ) the flux then differs by 1e-4. False where obstacles.csv has too few rows."""
+    path = run.folder / "obstacles.csv"
+    if not path.is_file():
+        return False
+    table = read_table(path)
+    times, which = np.unique(table["time"], return_inverse=True)
+    late = times >= 0.5 * run.summary["physical_seconds"]
+    force = np.bincount(which, table[f"f{axis}"], len(times))[late]
+    return np.count_nonzero(late) > 2 and np.ptp(force) < STEADY * np.abs(force).max()
+
+
 def of_flux(run):
     """Mean velocity over the box in the last frame of a Run whose fluid a steady force, or a pressure difference across
     periodic sides, drives past solids, and the permeability k = ν U/g that it gives where it no longer changes and
     the viscosity is one."""
-    p = run.parameters
-    drive = {axis: p.get(f"body_force_{axis}", 0.0) + p.get(f"pressure_jump_{axis}", 0.0) / (p.get("density", 1.0) * p.get(f"box_{axis}", 1.0))
-             for axis in "xyz"}
-    if not any(drive.values()) or not (run.folder / "fields.h5").is_file():
-        return []
-    frames = run.frames()
-    flux = dict(zip("xyz", run.flux(frames[-1][1]))) if frames else {}
-    before = dict(zip("xyz", run.flux(frames[-2][1]))) if len(frames) > 1 else {}
-    newtonian = "share_at_rest_bound" not in p
+    times, flux = fluxes(run)
     found = []
-    for axis, mean in flux.items():
-        if not drive[axis]:
-            continue
-        found.append(quantity(f"mean velocity along {axis}, solids included", mean, "m/s"))
-        if newtonian and abs(mean - before.get(axis, 0.0)) < STEADY * abs(mean):
-            found.append(quantity(f"permeability along {axis}", p["kinematic_viscosity"] * mean / drive[axis], "m²"))
+    for axis, means in flux.items():
+        found.append(quantity(f"mean velocity along {axis}, solids included", means[-1], "m/s"))
+        if YIELDS not in run.parameters and not why_unsteady(run, axis, times, means):
+            found.append(quantity(f"permeability along {axis}", run.parameters["kinematic_viscosity"] * means[-1] / drives(run)[axis], "m²"))
     return found
+
+
+def not_told(run):
+    """Sentences on quantities that a Run could have and lacks: permeabilities, and why."""
+    times, flux = fluxes(run)
+    if YIELDS in run.parameters:
+        return [f"No permeability along {axis}: the viscosity is not one number." for axis in flux]
+    whys = {axis: why_unsteady(run, axis, times, means) for axis, means in flux.items()}
+    return [f"No permeability along {axis}: {why}." for axis, why in whys.items() if why]
 
 
 def spheres_of_clumps(run):

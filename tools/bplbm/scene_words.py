@@ -31,8 +31,12 @@ def motion_text(obstacle, dimension):
     where = " on its surface" if obstacle.get("surface_only") else ""
     if kind in ("rotation", None):
         speed = obstacle["angular_velocity"]
-        axis = "" if dimension == 2 else " about ({})".format(", ".join(f"{v:g}" for v in obstacle.get("axis", [0, 0, 1])))
-        return f"{abs(speed):g} rad/s {'↺' if speed > 0 else '↻'}{axis}{where}"
+        if dimension == 2:
+            return f"{abs(speed):g} rad/s {'↺' if speed > 0 else '↻'}{where}"
+        axis = obstacle.get("axis", [0, 0, 1])
+        seen = -speed * axis[1]  # along y, with x to the right and z upwards: y points away from the reader
+        sense = " ↺" if seen > 0 else " ↻" if seen < 0 else ""
+        return f"{speed:g} rad/s{sense} about ({', '.join(f'{v:g}' for v in axis)}){where}"
     if kind == "linear":
         return f"({', '.join(f'{v:g}' for v in obstacle['velocity'])}) m/s{where}"
     if kind == "oscillation":

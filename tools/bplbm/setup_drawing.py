@@ -105,7 +105,7 @@ def draw_obstacle(axes, o, scene, folder, unit):
         low, high = np.array(o["from"])[flat] / unit, np.array(o["to"])[flat] / unit
         axes.add_patch(plt.Rectangle(low, *(high - low), facecolor="0.6", edgecolor="0.3"))
     if text := motion_text(o, up + 1):
-        low, high = (corner[flat] / unit for corner in shapes.extent(o, folder))
+        low, high = (np.clip(corner[flat] / unit, 0, np.array(flat_box(scene)) / unit) for corner in shapes.extent(o, folder))
         hollow = o.get("hollow", False)
         axes.annotate(text, (0.5 * (low[0] + high[0]), high[1] if hollow else 0.5 * (low[1] + high[1])), ha="center",
                       va="bottom" if hollow else "center", zorder=5, fontsize=8)
@@ -127,6 +127,8 @@ def figure_of(scene, folder):
     figure, axes = plt.subplots(figsize=(width, np.clip(width * box[1] / box[0], 1.6, 6.5)))
     for o in scene.get("obstacle", []):
         draw_obstacle(axes, o, scene, folder, unit)
+    for artist in [*axes.patches, *axes.collections, *axes.images]:
+        artist.set_clip_path(plt.Rectangle((0, 0), *box, transform=axes.transData))
     discs = [plt.Circle((x / unit, y / unit), d / 2 / unit) for x, y, d in discs_of(scene, folder)]
     axes.add_collection(PatchCollection(discs, facecolor="wheat", edgecolor="0.3", linewidth=0.5, zorder=2))
     draw_sides(axes, scene, box, unit)

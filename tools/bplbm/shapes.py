@@ -9,14 +9,27 @@ RAW = {"uint8": "<u1", "int8": "<i1", "bool": "<u1", "uint16": "<u2", "int16": "
 
 
 def read_stl(path):
-    """Corners [triangle][3][3] of a binary or ASCII .stl file, in the file's unit."""
+    """Corners [triangle][3][3] of a binary or ASCII .stl file, in the file's unit. Throws ValueError: what is wrong with it."""
     data = pathlib.Path(path).read_bytes()
     count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else 0
     if count > 0 and len(data) == 84 + 50 * count:
         facets = np.frombuffer(data, dtype=[("floats", "<f4", 12), ("attribute", "<u2")], offset=84)
-        return facets["floats"].reshape(-1, 4, 3)[:, 1:].astype(float)
-    words = [line.split() for line in data.decode().splitlines()]
-    return np.array([word[1:4] for word in words if word[:1] == ["vertex"]], dtype=float).reshape(-1, 3, 3)
+        corners = facets["floats"].reshape(-1, 4, 3)[:, 1:].astype(float)
+    elif b"facet" not in data or b"\0" in data:
+        announced = f" where its header announces {count} facets, {84 + 50 * count} bytes" if len(data) >= 84 else " and no 'facet'"
+        raise ValueError(f"{path} has {len(data)} bytes{announced}; give a whole .stl file, binary or ASCII")
+    else:
+        words = [line.split() for line in data.decode(errors="replace").splitlines()]
+        vertices = [word[1:4] for word in words if word[:1] == ["vertex"]]
+        if not vertices or len(vertices) % 3:
+            raise ValueError(f"{path} holds {len(vertices)} corners, which are no triangles; give three a facet: is the file whole?")
+        try:
+            corners = np.array([[float(v) for v in vertex] for vertex in vertices]).reshape(-1, 3, 3)
+        except ValueError:
+            raise ValueError(f"{path} has a corner that is not three numbers; give a whole .stl file, binary or ASCII") from None
+    if not np.isfinite(corners).all():
+        raise ValueError(f"{path} has corners that are not finite; give finite numbers")
+    return corners
 
 
 def placed_mesh(obstacle, folder):

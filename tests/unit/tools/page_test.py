@@ -22,8 +22,8 @@ from bplbm import pictures, result, run as launcher  # noqa: E402
 from bplbm.page import flow, histories, picture  # noqa: E402
 from bplbm.page.failed import write_failed_page  # noqa: E402
 from bplbm.page.run import write_page  # noqa: E402
-from bplbm.quantities import default_quantities, of_particles  # noqa: E402
-from bplbm.reading import Table  # noqa: E402
+from bplbm.quantities import default_quantities, not_told, of_particles  # noqa: E402
+from bplbm.reading import PARTICLE, Table  # noqa: E402
 from bplbm.results import Run  # noqa: E402
 from bplbm.scenes import Scene  # noqa: E402
 
@@ -168,6 +168,12 @@ class Page(Output):
             for frame in f.values():
                 frame["particle_carrier"] = np.array([-1.0, 1.0])  # the second is a sphere of the first
         self.assertEqual(default_quantities(run)[1]["value"], 1)
+        before = self.page().count('stroke="#6b5d43"')
+        with h5py.File(self.out / "fields.h5", "a") as f:
+            for frame in f.values():
+                frame["particles"][0, PARTICLE[2].index("radius")] = 0.0
+        self.assertEqual(self.page().count('stroke="#6b5d43"'), before - 1)
+        self.assertEqual(len(flow.read_planes(run)[0].discs), 1)
 
     def test_a_driven_flow_past_solids_has_its_permeability(self):
         run = self.write(2)
@@ -182,8 +188,26 @@ class Page(Output):
         self.assertNotIn("permeability along y", found)
         last = run.frames()[-1][1]
         with h5py.File(self.out / "fields.h5", "a") as f:
-            f[last].attrs["flux_x"] = 1e-3  # it still grows
+            f[last].attrs["flux_x"] = 1e-3  # it still changes
         self.assertNotIn("permeability along x", [q["name"] for q in default_quantities(run)])
+        self.assertRegex(not_told(run)[0], "No permeability along x: not steady yet: .* changed by 50 % from ")
+        summary = json.loads((self.out / "summary.json").read_text())
+        parameters = {**summary["parameters"], **run.parameters}
+        (self.out / "summary.json").write_text(json.dumps({**summary, "parameters": parameters}))
+        self.assertIn("No permeability along x: not steady yet", self.page())
+        with h5py.File(self.out / "fields.h5", "a") as f:
+            for name in set(f) - {last}:
+                del f[name]
+        self.assertIn("one frame does not say", not_told(run)[0])
+        end = run.summary["physical_seconds"]
+        for slowness, steady in ((0.05, True), (0.5, False)):  # of the drag, over the time of the run
+            rows = [f"{part * end},{k},{1 - np.exp(-part / slowness)},0" for part in np.linspace(0, 1, 11) for k in (1, 2)]
+            (self.out / "obstacles.csv").write_text("\n".join(["time,id,fx,fy", *rows]) + "\n")
+            self.assertEqual("permeability along x" in [q["name"] for q in default_quantities(run)], steady)
+            self.assertEqual(not_told(run) == [], steady)
+        run.summary["ending"] = "steady: the velocity changes by less than 1e-05 a turnover"
+        self.assertIn("permeability along x", [q["name"] for q in default_quantities(run)])
+        self.assertEqual(not_told(run), [])
 
     def test_both_waiting_at_once_is_said(self):
         self.assertIsNone(launcher.hint_of_waiting(0.5, 9.6, 10.0))  # in turns
@@ -251,6 +275,14 @@ class Failed(Output):
             for part in ("exit code 3", "numerics", "after 0.1 s of flow", "<b>interval 7: the fluid moves at &lt;9&gt; m/s</b>",
                          "Set-up", "Flow until then", "Histories until then", "force of the fluid in", "&lt;too fast&gt;", "tools/run sand"):
                 self.assertIn(part, text, dimensions)
+
+    def test_a_signal_is_said(self):
+        self.write(2)
+        (self.out / "error.log").write_text("Primary job  terminated normally, but 1 process returned\n-----\n")
+        (self.out / "lbm.log").write_text("duration     1 s\n\nending       stopped by a signal\n")
+        self.assertIn("<b>stopped by a signal</b>", self.failed_page())
+        (self.out / "error.log").write_text("liggghts | error | lost atoms\n")
+        self.assertIn("<b>lost atoms</b>", self.failed_page())
 
     def test_needs_nothing_but_the_scene(self):
         self.write(2)

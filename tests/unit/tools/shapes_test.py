@@ -128,6 +128,32 @@ class Images(unittest.TestCase):
             self.assertIn(said, drawing.svg())
             self.assertIn(said, texts)
 
+    def test_the_sense_of_a_rotation_is_as_it_is_seen(self):
+        tables = {"box": {"size": [1.0, 1.0, 1.0]}, "fluid": {"density": 1000.0, "kinematic_viscosity": 1e-6}}
+        for axis, speed, said in (([0, 1, 0], 2.0, "2 rad/s ↻ about (0, 1, 0)"), ([0, 1, 0], -2.0, "-2 rad/s ↺ about (0, 1, 0)"),
+                                  ([0, -1, 0], 2.0, "2 rad/s ↺ about (0, -1, 0)"), ([0, 0, 1], -2.0, "-2 rad/s about (0, 0, 1)")):
+            drum = {"from": [0.5, 0.1, 0.5], "to": [0.5, 0.9, 0.5], "diameter": 0.4, "motion": "rotation", "angular_velocity": speed, "axis": axis}
+            drawing = Drawing({**tables, "obstacle": [drum]})
+            drawing.obstacles("")
+            self.assertIn(f">{said}<", drawing.svg())
+            turn = np.cross(np.multiply(axis, speed), [1, 0, 0])[2]  # upwards at the right: against the clock
+            self.assertEqual("↺" in said, turn > 0)
+
+    def test_what_lies_beyond_the_box_is_cut(self):
+        rod = {"from": [-0.05, 0.01, 0.005], "to": [0.07, 0.01, 0.005], "diameter": 0.002}
+        tables = {"box": {"size": [0.02, 0.02, 0.01]}, "fluid": {"density": 1000.0, "kinematic_viscosity": 1e-6}, "obstacle": [rod]}
+        drawing = Drawing(tables)
+        drawing.obstacles("")
+        svg = drawing.svg()
+        self.assertIn('<clipPath id="setup-box"><rect x="46" y="46" width="360.0" height="180.0"/>', svg)
+        self.assertRegex(svg, r'<g clip-path="url\(#setup-box\)"><path d="M-854.0 136.0L1306.0 136.0"[^>]*/></g>')
+        figure = figure_of(tables, pathlib.Path("none"))
+        patch = figure.axes[0].patches[0]
+        figure.canvas.draw()
+        np.testing.assert_allclose(patch.clipbox.extents if patch.get_clip_path() is None else
+                                   patch.get_clip_path().get_fully_transformed_path().get_extents().extents,
+                                   figure.axes[0].transData.transform([[0, 0], [20, 10]]).ravel())
+
     def test_the_discs_of_a_clump_have_no_lines_inside(self):
         import matplotlib.pyplot as plt
         from bplbm.pictures import draw_discs

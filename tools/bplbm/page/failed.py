@@ -1,6 +1,7 @@
 """The page of a run that did not come to its end: why, and what it had made until then."""
 
 import html
+import re
 
 import h5py
 import numpy as np
@@ -50,6 +51,19 @@ def attempt(part, *arguments):
         return ""
 
 
+def why(folder, text):
+    """What ended a run. text: its error.log; where no program told an error, how the fluid's log says that it ended (by a
+    signal, say), before what mpirun says of any job."""
+    if "| error |" not in text:
+        try:
+            endings = re.findall(r"^ending\s+(.*)$", (folder / "lbm.log").read_text(errors="replace"), re.M)
+        except OSError:
+            endings = []
+        if endings:
+            return endings[-1]
+    return reason_of(text)
+
+
 def write_failed_page(folder, scene, files, words, line, code):
     """Writes index.html of a run that ended with an exit code other than 0. Arguments as those of write_page.
 
@@ -65,7 +79,7 @@ def write_failed_page(folder, scene, files, words, line, code):
     shown = page(title, f"<h1>{html.escape(title)}</h1>",
                  f'<p><span class="bad">exit code {code}</span> ({html.escape(ENDED.get(code, "bad input"))}) '
                  f'after {run.summary["physical_seconds"]:.6g} s of flow</p>',
-                 section("Why", f"<p><b>{html.escape(reason_of(text))}</b></p>",
+                 section("Why", f"<p><b>{html.escape(why(folder, text))}</b></p>",
                          f"<details><summary>all that was said</summary><pre>{html.escape(text)}</pre></details>"),
                  f'<div class="row"><div>{section("Set-up", attempt(setup, run, tables, scene.folder))}</div>'
                  f'<div style="flex:1;min-width:320px">{section("Flow until then", moving)}</div></div>',

@@ -47,7 +47,7 @@ def discs_of(frame, size):
     except AttributeError:
         return np.zeros((0, 3))
     if len(size) == 2:
-        return np.column_stack([p["x"], p["y"], p["radius"]])
+        return np.column_stack([p["x"], p["y"], p["radius"]])[p["radius"] > 0]  # the carrier of a clump has none
     depth = p["y"] - float(frame.coordinates["y"].mean())
     cuts = np.abs(depth) < p["radius"]
     return np.column_stack([p["x"], p["z"], np.sqrt(np.maximum(0, p["radius"]**2 - depth**2))])[cuts]

@@ -16,6 +16,7 @@ from bplbm.page.html import Cell, page, row, section, table
 from bplbm.page.picture import data_url
 from bplbm.page.setup import setup
 from bplbm.project import INSTALLED, ROOT, repeated
+from bplbm.quantities import not_told
 from bplbm.results import Run
 from bplbm.toml_text import read_laid_over, toml
 
@@ -45,7 +46,8 @@ def results(run):
     told = run.quantities
     heads = ["result", "value", "unit", "reference", "error", "tolerance", "", "source"]
     return (table(heads, [judged(r, run.summary.get("not_judged", "")) for r in run.results]) if run.results else "", "<p></p>" if run.results and told else "",
-            table(["quantity", "value", "unit"], [[q["name"], q["value"], named_unit(q)] for q in told]) if told else "")
+            table(["quantity", "value", "unit"], [[q["name"], q["value"], named_unit(q)] for q in told]) if told else "",
+            "".join(f'<p class="soft">{html.escape(line)}</p>' for line in not_told(run)))
 
 
 def bar(seconds, whole, name):

@@ -127,10 +127,15 @@ class Drawing:
         if not text:
             return
         low, high = shapes.extent(o, folder)
+        origin = np.array(self.tables["box"].get("origin", np.zeros(len(low))))
+        low, high = (np.clip(corner, origin, origin + self.tables["box"]["size"]) for corner in (low, high))
         x, y = self.place(np.append(0.5 * (low + high)[:-1], high[-1] if o.get("hollow") else 0.5 * (low + high)[-1]))
         self.parts.append(f'<text x="{x:.1f}" y="{y - 4 if o.get("hollow") else y + 4:.1f}" class="middle">{html.escape(text)}</text>')
 
     def obstacles(self, folder):
+        """Cut at the sides of the box; the words on them are not."""
+        self.parts.append(f'<clipPath id="setup-box"><rect x="{ROOM}" y="{ROOM}" width="{self.width:.1f}" height="{self.height:.1f}"/>'
+                          '</clipPath><g clip-path="url(#setup-box)">')
         for o in self.tables.get("obstacle", []):
             if "image" in o:
                 self.image(o, folder)
@@ -150,6 +155,7 @@ class Drawing:
                 (x0, y1), (x1, y0) = self.place(o["from"]), self.place(o["to"])
                 self.parts.append(f'<rect x="{x0:.1f}" y="{y0:.1f}" width="{x1 - x0:.1f}" height="{y1 - y0:.1f}" fill="#999" '
                                   'stroke="#555"/>')
+        self.parts.append("</g>")
         for o in self.tables.get("obstacle", []):
             self.motion(o, folder)
 
@@ -180,7 +186,8 @@ def first_discs(run, tables):
     if len(frames):
         try:
             p = frames[0].particles
-            return np.column_stack([p["x"], p["y" if dimensions(tables) == 2 else "z"], p["radius"]]).tolist()
+            discs = np.column_stack([p["x"], p["y" if dimensions(tables) == 2 else "z"], p["radius"]])
+            return discs[discs[:, 2] > 0].tolist()  # the carrier of a clump has no radius
         except AttributeError:
             pass
     particles = tables.get("particles", {})
