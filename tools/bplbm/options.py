@@ -68,6 +68,7 @@ def parser():
     p.add_argument("--engine-command", metavar="'COMMAND'", help="any other program that does; in its words {folder} is the "
                    "scene's folder and {out} the output folder")
     p.add_argument("--until", type=seconds, metavar="SECONDS", help="stop at this physical time")
+    p.add_argument("--judge", action="store_true", help="judge the results also where --until ends the run early")
     p.add_argument("--record", metavar="FILE", help="write the exchange to a trace")
     p.add_argument("--restart", action="store_const", const="checkpoint", help="go on from the checkpoint in --out")
     p.add_argument("--accept", action="append", default=[], metavar="KEY",

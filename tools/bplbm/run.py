@@ -341,7 +341,8 @@ def go(args, others, out):
         return code
     try:
         draw(args.scene, out, args.until is not None)
-        early_end.mark(out, scene_files(args))
+        if not args.judge:
+            early_end.mark(out, scene_files(args))
     finally:  # a plot.py that fails leaves the page, which needs none
         if not args.no_page and not args.scene.is_solid_alone:
             make_page(args, out)

@@ -54,7 +54,7 @@ class Installed(unittest.TestCase):
         return said.stdout
 
     def test_a_shipped_scene_runs_into_the_current_folder(self):
-        said = self.succeeds("run", "settling_disc", "--no-study", "--until", "0.6")
+        said = self.succeeds("run", "settling_disc", "--no-study", "--until", "0.6", "--judge")
         self.assertIn("pass | Re_max at D/Δx = 20", said)
         out = self.folder / "out" / "settling_disc"
         self.assertAlmostEqual(json.loads((out / "summary.json").read_text())["physical_seconds"], 0.6, 3)
