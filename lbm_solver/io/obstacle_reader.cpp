@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/io/obstacle_reader.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -198,8 +198,7 @@ GreyImage cut_out(TableReader& t, GreyImage image, Cell3 from, Cell3 to) {
     if (part.size[k] < 1 || to[k] > image.size[k])
       t.fail("image",
              fmt::format(
-                 "has {} × {} × {} voxels: {} {} and {} in {}", image.size[0], image.size[1],
-                 image.size[2],
+                 "has {} voxels: {} {} and {} in {}", fmt::join(image.size, " × "),
                  part.size[k] < 1 ? "nothing lies between" : "they do not fill what is between",
                  from[k], to[k], "xyz"[k]),
              "correct cut_from and cut_to, in voxels");
