@@ -258,15 +258,15 @@ TEST(FullDisk, EndsBothWithTheReason) {
   expect_end(job, 1, {"is the disk full?", "liggghts | error | the fluid program stopped"});
 }
 
-/// Runs a job that would last for hours and sends a signal to one of its programs after two
-/// seconds.
+/// Runs a job that would last for hours and sends a signal to one of its programs when both have
+/// begun to step.
 JobResult run_and_kill(const std::string& program, const std::string& signal = "KILL",
                        const std::string& solid = kLiggghts + " -screen none") {
   SettlingDisc scene;
   scene.change_scene("end_time = 0.04", "end_time = 1000.0");
   const std::string job = mpirun({kLbm + " --progress none"}, {solid});
-  return test::run("(" + job + ") & job=$!; sleep 2; pkill -" + signal + " -x -P $job " + program +
-                       "; wait $job",
+  return test::run("(" + job + ") & job=$!; until [ -s out/probes.csv ]; do sleep 0.1; done; " +
+                       "sleep 0.5; pkill -" + signal + " -x -P $job " + program + "; wait $job",
                    scene.folder(), 50.0);
 }
 

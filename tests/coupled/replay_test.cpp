@@ -77,7 +77,8 @@ TEST(CutOffRecording, IsReadableAndReplaysToWhereItEnds) {
   const std::string job =
       test::mpirun({kLbm + " --record cut.h5 --progress none"}, {kLiggghts + " -screen none"});
   const auto killed =
-      test::run("(" + job + ") & job=$!; sleep 3; pkill -KILL -x -P $job lbm; wait $job",
+      test::run("(" + job + ") & job=$!; until [ -s out/probes.csv ]; do sleep 0.1; done; " +
+                    "sleep 2; pkill -KILL -x -P $job lbm; wait $job",
                 scene.folder(), 50.0);
   EXPECT_FALSE(killed.timed_out);
   const auto info = test::run(test::kBin + "/trace info cut.h5", scene.folder(), 50.0);
