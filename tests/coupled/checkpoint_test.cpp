@@ -69,6 +69,7 @@ class CheckpointTest : public testing::Test {
 };
 
 // Bonds that break, walls with friction, two ranks: all that a restart file must hold.
+// The default suite holds the same of a smaller block (stopped_run_test).
 class BreakingBlock : public CheckpointTest {
  protected:
   void expect_to_the_bit(const std::string& schedule) {
@@ -88,7 +89,7 @@ class BreakingBlock : public CheckpointTest {
   }
 };
 
-TEST_F(BreakingBlock, OverlappedGoesOnToTheBit) {
+TEST_F(BreakingBlock, Slow_OverlappedGoesOnToTheBit) {
   expect_to_the_bit("overlapped");
 }
 TEST_F(BreakingBlock, Slow_SerialGoesOnToTheBit) {
@@ -97,7 +98,7 @@ TEST_F(BreakingBlock, Slow_SerialGoesOnToTheBit) {
 
 TEST_F(CheckpointTest, ASignalEndsBothWithACheckpoint) {
   use("settling_disc",
-      "[run]\nend_time = 0.5\ncheckpoint_every = 10.0\n[numerics]\n"
+      "[run]\nend_time = 0.25\ncheckpoint_every = 10.0\n[numerics]\n"
       "cells_per_diameter = 20\n[output]\nfields_every = 1.0\n");
   expect_ok(run("whole"));
   const JobResult cut =
