@@ -77,9 +77,10 @@ class BreakingBlock : public CheckpointTest {
         "[run]\nend_time = 0.006\ncheckpoint_every = 0.001\n[output]\nprobe_every = 1e-4\n"
         "fields_every = 0.002\n[coupling]\nschedule = \"" +
             schedule + "\"\n");
-    expect_ok(run("whole", "", 2));
-    expect_ok(run("parts", "--until 0.0052", 2));
-    const JobResult rest = run("parts", "--restart", 2);
+    const double limit = 240.0;  // two programs wait for each other in each of 5400 intervals
+    expect_ok(run("whole", "", 2, limit));
+    expect_ok(run("parts", "--until 0.0052", 2, limit));
+    const JobResult rest = run("parts", "--restart", 2, limit);
     expect_ok(rest);
     EXPECT_NE(rest.output.find("goes on from"), std::string::npos) << rest.output;
     expect_same("probes.csv");
