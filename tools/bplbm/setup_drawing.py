@@ -110,8 +110,8 @@ def draw_obstacle(axes, o, scene, folder, unit):
         start, size = np.array(flat_origin(scene)), flat_box(scene)
         low, high = (np.clip(corner[flat], start, start + size) / unit for corner in shapes.extent(o, folder))
         hollow = o.get("hollow", False)
-        axes.annotate(text, (0.5 * (low[0] + high[0]), high[1] if hollow else 0.5 * (low[1] + high[1])), ha="center",
-                      va="bottom" if hollow else "center", zorder=5, fontsize=8)
+        axes.annotate(text, (0.5 * (low[0] + high[0]), high[1] if hollow else 0.5 * (low[1] + high[1])), xytext=(0, 3 if hollow else 0),
+                      textcoords="offset points", ha="center", va="bottom" if hollow else "center", zorder=5, fontsize=8)
 
 
 def checked(tables):
@@ -145,7 +145,9 @@ def figure_of(scene, folder):
         spine.set_visible(False)
     axes.set_xlabel(f"x [{label}]", labelpad=16 if any(on_paper(b["side"]) == "bottom" for b in scene.get("boundary", [])) else 4)
     axes.set_ylabel(f"{up} [{label}]", labelpad=16 if any(b["side"] == "left" for b in scene.get("boundary", [])) else 4)
-    figure.text(0.5, 1.0, drive_text(scene), ha="center", va="bottom", fontsize=8, transform=figure.transFigure)
+    above = 24 if any(on_paper(b["side"]) == "top" for b in scene.get("boundary", [])) else 10  # points: words of a boundary
+    axes.annotate(drive_text(scene), (0.5, 1.0), xycoords="axes fraction", xytext=(0, above), textcoords="offset points",
+                  ha="center", va="bottom", fontsize=8)
     return figure
 
 
