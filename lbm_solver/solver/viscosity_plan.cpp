@@ -128,13 +128,13 @@ void check_order(const Scene& s, const ViscosityLaw& law) {
   const std::string both = fmt::format("{}: {} is not below {}", s.file,
                                        bound_text("nu_min", law.nu_min(), lower_default(s, law)),
                                        bound_text("nu_max", law.nu_max(), upper_default(s)));
-  if (!s.fluid.law.nu_min) throw InputError(both, "take a larger nu_max; or " + way_to_thinner(s));
-  throw InputError(
-      both, "take a smaller nu_min; or " + way_to_thicker(s, 1.01 * law.nu_min() / law.nu_max()));
+  const char* larger = law.nu_min() < 0.01 * kThickest ? "take a larger nu_max; or " : "";
+  throw InputError(both, !s.fluid.law.nu_min ? larger + way_to_thinner(s)
+                                             : "take a smaller nu_min; or " +
+                                                   way_to_thicker(s, law.nu_min() / law.nu_max()));
 }
 
-/// A viscosity at the typical shear rate that the step cannot carry. Before its bounds, which may
-/// be far from what it should be, too.
+/// A viscosity at the typical shear rate that the step cannot carry; its bounds may be off with it.
 /// @throws InputError
 void check_typical(const Scene& s, const ViscosityLaw& law, const Plan& plan) {
   const double nu = law.reference(), tau = tau_of(plan, nu), dx = plan.units.dx;
