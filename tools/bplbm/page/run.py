@@ -146,7 +146,7 @@ def write_page(folder, scene, files, words, line):
     written = time.localtime((run.folder / "summary.json").stat().st_mtime)
     text = page(title, f"<h1>{html.escape(title)}</h1>",
                 f'<p class="soft">{html.escape(scene.heading())} · {s["physical_seconds"]:.6g} s of flow in '
-                f'{s["wall_seconds"]:.3g} s, {html.escape(s["ending"])} · {time.strftime("%Y-%m-%d %H:%M", written)}</p>',
+                f'{s["wall_seconds"]:.3g} s, {html.escape(s.get("not_judged") or s["ending"])} · {time.strftime("%Y-%m-%d %H:%M", written)}</p>',
                 section("Results", *results(run)),
                 f'<div class="row"><div>{section("Set-up", setup(run, tables, scene.folder))}</div>'
                 f'<div style="flex:1;min-width:320px">{section("Flow", moving)}</div></div>',
