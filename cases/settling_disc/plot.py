@@ -5,7 +5,7 @@ import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
-from bplbm import Run, draw_snapshots, result, studies
+from bplbm import Run, draw_snapshots, quantity, result, studies
 
 # Maximum Reynolds number rho_s d U / mu in the literature: 17.27 (Glowinski et al. 2001, h = 1/192)
 # to 17.42 (Wan and Turek 2006); their middle is the reference, 2 % of it the tolerance: half of the
@@ -13,10 +13,17 @@ from bplbm import Run, draw_snapshots, result, studies
 RE_LITERATURE = (17.27, 17.42)
 RE_REFERENCE = 0.5 * sum(RE_LITERATURE)
 RE_TOLERANCE = 0.02
-
-
-# Case 2 (rho_s 1500, nu 1e-6): 438 ... 503 in the literature.
+# Case 2: 438 ... 503 in the literature.
 RE_REFERENCE_2, RE_TOLERANCE_2 = 470.0, 0.08
+# Density of the disc [kg/m³] and viscosity of the fluid [m²/s] of the two cases; those of others, as in a sweep, are not judged.
+CASES = {1: (1250.0, 1e-5), 2: (1500.0, 1e-6)}
+
+
+def case_of(run):
+    """1 or 2, or None of another disc or fluid."""
+    p = run.parameters
+    return next((case for case, values in CASES.items()
+                 if np.allclose((p["particle_density"], p["kinematic_viscosity"]), values, rtol=1e-9, atol=0)), None)
 
 
 def reynolds(run):
@@ -28,7 +35,10 @@ def reynolds(run):
 
 def judged(run, others):
     p, probe = run.parameters, run.probes()
-    if p["particle_density"] > 1400:
+    case = case_of(run)
+    if case is None:
+        return []
+    if case == 2:
         return [result("Re_max", reynolds(run)[1].max(), "1", RE_REFERENCE_2,
                        "Glowinski et al. 2001 and others: 438 ... 503", RE_TOLERANCE_2)]
     runs = [run] + [r for name, r in others.items() if "inertia" not in name]
@@ -51,7 +61,8 @@ def picture_history(run, others):
     p, probe = run.parameters, run.probes()
     weight = p["particle_density"] * np.pi / 4 * p["diameter"] ** 2 * p["depth"] * -p["gravity_y"]
     figure, (top, bottom) = plt.subplots(2, 1, figsize=(6.4, 5.2), sharex=True)
-    top.axhspan(*RE_LITERATURE, color="0.8", label="literature, maximum")
+    if case_of(run) == 1:
+        top.axhspan(*RE_LITERATURE, color="0.8", label="literature, maximum")
     top.plot(*reynolds(run), label=f"D/Δx = {p['cells_per_diameter']:.0f}")
     for name, other in others.items():
         label = ("without the inner fluid's inertia" if "inertia" in name
@@ -104,7 +115,7 @@ def fall_deficit(run, other, time=0.4):
 def main():
     run = Run(pathlib.Path(sys.argv[1]))
     others = studies(run)
-    run.write_results(judged(run, others))
+    run.write_results(judged(run, others), [] if case_of(run) == 2 else [quantity("Re_max", reynolds(run)[1].max(), "1")])
     draw_snapshots(run, (0.05, 0.2, 0.4, 0.6, 0.75, 1.0), 1.05 * np.abs(run.probes()["vy"]).max())
     picture_history(run, others)
     picture_resolution(run, others)

@@ -5,9 +5,9 @@ intact bonds; broken bonds are hidden.
     pvpython view.py --time 0.5 --out a.png    (or pvbatch)
     paraview --script=view.py                  the same scene, ready, in the program
 
-Without a screen it draws on one that xvfb-run (Debian: xvfb, xauth) makes. In three dimensions the fluid is cut at the middle of
-the box, and what lies in front of the cut is left out. Light grey in the plane is what solids cover of it. Beside it stand all
-solids whole, without the fluid, and walls that can be looked through.
+Without a screen it draws on one that xvfb-run (Debian: xvfb, xauth) makes. In three dimensions the fluid and the
+solids are cut at the middle of the box, and what lies in front of the cut is left out. Light grey in the plane is what solids cover of
+it. Beside it stand all solids whole, without the fluid, and walls that can be looked through.
 """
 
 import argparse
@@ -92,13 +92,15 @@ def half_covered(cells, array, solid, name):
 
 
 def highest(fluid, field, times):
-    """Largest absolute value of a field over all frames; over the present one where they are many."""
+    """Largest absolute value of a field over all frames; of the pressure that of half of the frames, since a first pulse or a blow
+    would leave no colours to the flow. Over the present frame where they are many."""
     cells = fluid.GetDataInformation().GetNumberOfCells()
-    largest = 0.0
+    peaks = []
     for time in times if cells * len(times) <= MOST_CELLS else []:
         fluid.UpdatePipeline(time)
-        largest = max(largest, *map(abs, reach(fluid, field)))
-    return largest or max(map(abs, reach(fluid, field)))
+        peaks.append(max(map(abs, reach(fluid, field))))
+    peaks = sorted(peak for peak in peaks if peak) or [max(map(abs, reach(fluid, field)))]
+    return peaks[len(peaks) // 2 if field == "pressure" else -1]
 
 
 def reach(fluid, field):
@@ -124,6 +126,7 @@ def colour(display, view, fluid, field, largest):
     bar.Title, bar.ComponentTitle = {"velocity": "speed [m/s]", "viscosity": "viscosity [m²/s]"}.get(field, "pressure [Pa]"), ""
     bar.TitleColor = bar.LabelColor = [0, 0, 0]
     bar.TitleFontSize = bar.LabelFontSize = 14
+    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.3g", "%.3g"
     bar.WindowLocation = "Upper Right Corner"
     display.SetScalarBarVisibility(view, True)
 
@@ -168,10 +171,11 @@ def show_balls(view, flat, bounds, cell, name, words, rgb):
     """Discs with rims, or spheres, of a block of centres and radii."""
     balls = block(name)
     if balls:
-        shown = behind(balls, flat, bounds)
         if flat:
-            plain(glyphs(shown, flat, 1.0, f"rims of {words}"), view, DARK, 0.2 * cell)
-        display = plain(glyphs(shown, flat, 0.9 if flat else 1.0, words), view, rgb, 0.3 * cell * flat)
+            plain(glyphs(balls, flat, 1.0, f"rims of {words}"), view, DARK, 0.2 * cell)
+        whole = glyphs(balls, flat, 0.9 if flat else 1.0, words)
+        cut = whole if flat or bounds is None else named(behind(whole, flat, bounds), f"{words} behind the plane")
+        display = plain(cut, view, rgb, 0.3 * cell * flat)
         display.Opacity = 0.35 if not flat and bounds is None and block("bonds") else 1.0  # bonds lie inside of grains
 
 
@@ -255,6 +259,7 @@ def main():
     shown, covered = fluid_and_solids(fluid, flat, bounds)
     display = pv.Show(shown, view)
     display.SetRepresentationType("Surface")
+    display.Ambient, display.Diffuse = 1.0, 0.0  # in the light its colours would not be those of the bar
     colour(display, view, fluid, args.field, largest)
     cell = (bounds[1] - bounds[0]) / (cells[1] - cells[0])
     show_obstacles(view, flat, bounds, cell, fluid, covered)

@@ -4,6 +4,7 @@ import json
 import re
 
 WARNS = re.compile(r"\bwarning\b|^hint\b", re.I)
+OWN_HINT = r"hint.* wait(s|ing) \d+ %"  # of the fluid on its waiting
 
 
 def warning_lines(folder):
@@ -15,7 +16,7 @@ def warning_lines(folder):
             if WARNS.search(line):
                 lines.append((log.name, re.sub(r"\s+", " ", line.strip())))
     if hint := hint_of_run(folder):  # the fluid knows its own waiting only
-        lines = [(name, line) for name, line in lines if not re.search(r"hint.* wait(s|ing) \d+ %", line)] + [("tools/run", hint)]
+        lines = [(name, line) for name, line in lines if not re.search(OWN_HINT, line)] + [("tools/run", hint)]
     told = " ".join(line for _, line in lines if line.startswith("liggghts | warning"))
     return [(name, line) for name, line in dict.fromkeys(lines)
             if not (line.startswith("WARNING: ") and re.sub(r" \(\S*:\d+\)$", "", line)[9:] in told)]

@@ -208,6 +208,7 @@ class Frame:
 
     @property
     def solid_fraction(self):
+        """Of the solids as the fluid sees them, whose radius differs a little from that of the particles (output.md)."""
         return self._field("solid_fraction")
 
     @property

@@ -16,10 +16,11 @@ import sys
 import time
 
 from bplbm import blanks, early_end, output_folder, placement, solid_alone
-from bplbm.logs import warning_lines
+from bplbm.logs import OWN_HINT, warning_lines
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
 from bplbm.project import BIN, INSTALLED, TOOLS, fluid_program, missing_cpu_features, tool
+from bplbm.written import error_text, with_unit
 
 OUT_OF_TOLERANCE = 4
 FAULT = 1
@@ -148,7 +149,14 @@ def add_solid_waiting(out):
     print(f"run | waiting: the fluid {summary['waiting']:.3g} s for the solid, the solid {summary['solid_waiting']:.3g} s for "
           f"the fluid, of {summary['wall_seconds']:.3g} s")
     if hint:
-        print(f"run | hint | {hint}")
+        own = "; the fluid's own hint above does not know of that" if own_hint(out) else ""
+        print(f"run | hint | {hint}{own}")
+
+
+def own_hint(out):
+    """Whether the fluid has advised on its waiting, of which it knows its own only."""
+    log = out / "lbm.log"
+    return log.is_file() and re.search(OWN_HINT, log.read_text(errors="replace")) is not None
 
 
 def hint_of_waiting(fluid, solid, wall):
@@ -157,7 +165,7 @@ def hint_of_waiting(fluid, solid, wall):
     idle = fluid + solid - wall
     if idle < max(wall / 3, 2.0):
         return None
-    return (f"for {idle / wall:.0%} of the time each program waited for the other one: other work has their cores (load "
+    return (f"for {100 * idle / wall:.0f} % of the time each program waited for the other one: other work has their cores (load "
             f"{os.getloadavg()[0]:.1f} on {os.cpu_count()} cores); the same job takes a part of that on free ones")
 
 
@@ -208,10 +216,6 @@ def colored(word, color):
     return word if plain else f"\033[{color}m{word}\033[0m"
 
 
-def with_unit(value, unit):
-    return f"{value:.5g}" if unit in ("1", "") else f"{value:.5g} {unit}"
-
-
 def judge(out):
     """Prints the results and quantities of summary.json. Returns whether all that were judged are within their tolerance."""
     summary = json.loads((out / "summary.json").read_text())
@@ -221,7 +225,7 @@ def judge(out):
             continue
         verdict = colored("pass", 32) if r["pass"] else colored("MISS", "1;31")
         print(f"run | {verdict} | {r['name']} = {with_unit(r['value'], r['unit'])}, reference {with_unit(r['reference'], r['unit'])} "
-              f"({r['source']}), error {100 * r['error']:+.2f} %, tolerance {100 * r['tolerance']:.2g} %")
+              f"({r['source']}), error {error_text(r['error'])}, tolerance {100 * r['tolerance']:.2g} %")
     for q in summary.get("quantities", []):
         print(f"run | told | {q['name']} = {with_unit(q['value'], q['unit'])}")
     return "not_judged" in summary or all(r["pass"] for r in summary["results"])

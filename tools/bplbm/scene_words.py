@@ -20,7 +20,7 @@ def words(boundary):
         return f"{kind} {pressure / 1e3:g} kPa" if abs(pressure) >= 1e3 else f"{kind} {pressure:g} Pa" if pressure else f"{kind} 0"
     if "velocity" in boundary:
         return f"{kind} {np.linalg.norm(boundary['velocity']):g} m/s {boundary.get('profile', '')}".rstrip()
-    return kind
+    return f"{kind} 0" if kind == "pressure" else kind
 
 
 def motion_text(obstacle, dimension):

@@ -136,10 +136,14 @@ def results_of(folder):
             "mass drift": summary["mass_drift"], "wall time [s]": summary["wall_seconds"]}
 
 
-def not_judged(folder):
-    """Why the results of a finished run count for nothing, as after --until; empty where they count."""
-    why = json.loads((folder / "summary.json").read_text()).get("not_judged")
-    return f"not judged: {why}" if why else ""
+def reason_of_finished(folder):
+    """Why the results of a finished run count for nothing, as after --until, or which of them missed their reference; else
+    empty."""
+    summary = json.loads((folder / "summary.json").read_text())
+    if why := summary.get("not_judged"):
+        return f"not judged: {why}"
+    return "; ".join(f"{r['name']} is {100 * r['error']:+.1f} % off, tolerance {100 * r['tolerance']:.2g} %" for r in summary["results"]
+                     if not r["pass"])
 
 
 @dataclass(frozen=True)
@@ -182,7 +186,7 @@ class Runner:
         text = (folder / "logs" / f"{name}.log").read_text(errors="replace")
         row = {"values": run.values, "computed": run.computed, "made_of": run.made_of, "code": code,
                "seconds": round(time.monotonic() - start, 2),
-               "reason": not_judged(folder / name) if code in ANSWERED else reason_of(text)[:400],
+               "reason": reason_of_finished(folder / name) if code in ANSWERED else reason_of(text)[:400],
                "results": results_of(folder / name) if code in ANSWERED else {}}
         self.table.add(name, row)
         reason = f" | {row['reason']}" if row["reason"] else ""

@@ -10,7 +10,7 @@ from unittest import mock
 import page_test  # beside this file: an output folder as lbm writes one
 import h5py
 import numpy as np
-from bplbm import early_end
+from bplbm import early_end, written
 from bplbm.page import run as page_of_run, sensors
 from bplbm.results import Run
 
@@ -37,7 +37,7 @@ class Sensors(page_test.Output):
     def test_each_kind_has_its_curves_with_units(self):
         run = self.write_tables()
         self.assertEqual(self.labels(sensors.charts(run)), [
-            "flow [m3/s] against time [s]", "mean pressure on planes [Pa] against time [s]",
+            "flow [m³/s] against time [s]", "mean pressure on planes [Pa] against time [s]",
             "momentum through planes [N] against time [s]", "force on sides [N] against time [s]",
             "middle: velocity in x [m/s] against distance along the line [m]", "mean along middle: velocity in x [m/s] against time [s]",
             "middle: pressure [Pa] against distance along the line [m]", "mean along middle: pressure [Pa] against time [s]"])
@@ -46,7 +46,7 @@ class Sensors(page_test.Output):
         self.assertTrue(">inlet, x<" in momentum and ">inlet, y<" not in momentum)
         self.assertTrue(">floor, x<" in force and ">floor, y<" in force)
         text = self.page()
-        for part in ("<h2>Sensors</h2>", "flow that is held [m3/s]", "its pressure gradient [Pa/m]"):
+        for part in ("<h2>Sensors</h2>", "flow that is held [m³/s]", "its pressure gradient [Pa/m]"):
             self.assertIn(part, text)
 
     def test_a_mean_along_a_line_leaves_out_what_is_no_number(self):
@@ -86,6 +86,14 @@ class Sensors(page_test.Output):
             self.assertEqual((sensors.charts(run), sensors.averages(run)), ([], []))
         self.assertNotIn("Sensors", self.page())
         self.assertNotIn("Averages", self.page())
+
+
+class Written(unittest.TestCase):
+    def test_numbers_and_units_read_as_a_person_writes_them(self):
+        self.assertEqual([written.error_text(e) for e in (0.0099, -0.5, 1e-6, -1e-6)], ["+0.99 %", "-50.00 %", "0.00 %", "0.00 %"])
+        self.assertEqual([written.share_text(s) for s in (0.814, 0.006, 0.005)], ["81 %", "1 %", "<1 %"])
+        self.assertEqual([written.unit_text(u) for u in ("m3/s", "kg/m3", "m/s2", "N m", "1")], ["m³/s", "kg/m³", "m/s²", "N m", "1"])
+        self.assertEqual((written.with_unit(17.345, "1"), written.with_unit(2, "N")), ("17.345", "2 N"))
 
 
 class Repeat(page_test.Output):

@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import numpy as np  # noqa: E402
 from bplbm import sweep  # noqa: E402
 from bplbm.page import chart  # noqa: E402
-from bplbm.page.sweep import curves  # noqa: E402
+from bplbm.page.sweep import charts, curves  # noqa: E402
 from bplbm.sweep_values import Mistake, Sweep, axis, evaluate, Names  # noqa: E402
 from bplbm.toml_text import laid_over, toml  # noqa: E402
 
@@ -98,9 +98,11 @@ density = float((overlay + "density = 1").split("density = ")[1].split()[0])
 open("started", "a").write(f"{density:g} ")
 if density == 13:
     sys.exit("lbm | error | unlucky <number>")
-result = {"name": "speed", "value": 2 * density, "unit": "m/s", "reference": 1, "source": "x", "error": 0, "tolerance": 1, "pass": True}
+missed = density == 15
+result = {"name": "speed", "value": 2 * density, "unit": "m/s", "reference": 1, "source": "x", "error": 0.5 * missed, "tolerance": 0.02, "pass": not missed}
 (out / "summary.json").write_text(json.dumps({"results": [result], "quantities": [], "physical_seconds": 1.0, "ma_max": 0.1,
                                               "mass_drift": 0.0, "wall_seconds": 0.1, "parameters": {}}))
+sys.exit(4 * missed)
 """
 
 
@@ -209,6 +211,21 @@ class Command(unittest.TestCase):
         self.main("--set", "fluid.density=12,13,14", "--retry")
         self.assertEqual(self.started(), ["13"])
 
+    def test_a_result_out_of_tolerance_is_named(self):
+        self.assertEqual(self.main("--set", "fluid.density=14,15"), 0)
+        self.assertEqual([(row["status"], row["reason"]) for row in self.rows()],
+                         [("ok", ""), ("out of tolerance", "speed is +50.0 % off, tolerance 2 %")])
+        page = (self.out / "index.html").read_text()
+        self.assertNotIn("speed is", page[:page.index("<h2>Reasons</h2>")])  # not in a column that is seen by scrolling only
+        self.assertIn("speed is +50.0 % off", page)
+        self.assertIn('<a href="logs/density-15.log" class=note>out of tolerance</a>', page)
+        self.assertIn("references of the scene", page)
+        self.assertNotIn("<h2>Reasons</h2>", self.page_of("fluid.density=14,16", "other"))
+
+    def page_of(self, values, folder):
+        self.main("--set", values, "--out", str(self.folder / folder))
+        return (self.folder / folder / "index.html").read_text()
+
     def test_a_folder_of_somebody_else_is_refused(self):
         self.out.mkdir()
         (self.out / "thesis.txt").write_text("x")
@@ -238,21 +255,35 @@ class Curves(unittest.TestCase):
     def test_are_a_line_for_each_of_the_other_values_and_a_mean_where_they_are_many(self):
         def rows(seeds):
             return {f"{x}{s}": {"all": {"x": x, "seed": s}, "results": {"y": x + s}} for x in (1, 2) for s in range(seeds)}
-        lines = curves(["x", "seed"], rows(2), "y", "x")
-        self.assertEqual([(line.name, list(line.y)) for line in lines], [("seed 0", [1, 2]), ("seed 1", [2, 3])])
-        line, = curves(["x", "seed"], rows(9), "y", "x")
+        varied = {"x": "x [m]", "seed": "particles.variables.seed [s]"}
+        lines = curves(["x", "seed"], varied, rows(2), "y", "x")
+        self.assertEqual([(line.name, list(line.y)) for line in lines], [("seed 0 s", [1, 2]), ("seed 1 s", [2, 3])])
+        line, = curves(["x", "seed"], varied, rows(9), "y", "x")
         self.assertEqual((line.name, list(line.y)), ("mean of 9 series", [5, 6]))
+
+    def test_a_result_of_one_value_alone_has_no_curve(self):
+        rows = {str(x): {"all": {"x": x}, "results": {"y": x, **({"z": x} if x == 3 else {})}} for x in (1, 2, 3)}
+        drawn = charts(["x"], {"x": "x [m]"}, rows)
+        self.assertEqual(re.findall('aria-label="([^"]*)"', drawn), ["y against x [m]"])
+
+    def test_a_long_label_has_two_lines(self):
+        self.assertEqual(chart.label_lines("largest speed of a particle [m/s]", 220), ["largest speed of a particle [m/s]"])
+        self.assertEqual(chart.label_lines("mean velocity along x, solids included [m/s]", 180), ["mean velocity along x,", "solids included [m/s]"])
+        self.assertEqual(chart.label_lines("x" * 99, 180), ["x" * 99])
 
     def test_ticks_are_round_and_no_peak_is_lost(self):
         self.assertEqual(chart.ticks(0, 1), [0, 0.2, 0.4, 0.6, 0.8, 1.0])
         self.assertEqual(chart.ticks(1100, 1250, 3), [1100, 1150, 1200, 1250])
         self.assertEqual(chart.tick_texts([0.018839, 0.0188395, 0.01884]), ["0.018839", "0.0188395", "0.01884"])
         self.assertEqual(chart.tick_texts([0, 0.2, 0.4]), ["0", "0.2", "0.4"])
+        self.assertEqual(chart.tick_texts([-20000, -10000, 0]), ["-20000", "-10000", "0"])
+        self.assertEqual(chart.ticks(0, 0.29999)[-1], 0.3)
         y = np.zeros(100000)
         y[4321] = 7
         x, thin = chart.thinned(np.arange(100000.0), y)
         self.assertLessEqual(len(x), chart.MOST_POINTS)
         self.assertEqual(thin.max(), 7)
+        self.assertEqual((x[0], x[-1]), (0, 99999))
 
     def test_gaps_stay_gaps(self):
         svg = chart.line_chart([chart.Line("a", np.arange(5.0), np.array([1, 2, np.nan, 3, 4]))], "x", "y")

@@ -10,6 +10,9 @@ COLORS = ("#1f6fb4", "#d1602b", "#2f8f4e", "#7a5bb0", "#b03a48", "#6b7280", "#b8
 MOST_POINTS = 500  # of a line; what a screen can show
 LEFT, RIGHT, TOP, BOTTOM = 80, 22, 12, 40
 LETTER = 6.2  # width of one, about
+LINE = 13  # height of one
+NEARLY = 1e-3  # of the distance of two ticks: an end that close to one has it
+PLAIN_DIGITS = 6  # of numbers that are written without an exponent
 
 
 @dataclass(frozen=True)
@@ -29,24 +32,24 @@ def ticks(low, high, wanted=5):
     raw = (high - low) / wanted
     power = 10.0 ** math.floor(math.log10(raw))
     step = next(power * f for f in (1, 2, 2.5, 5, 10) if power * f >= raw)
-    first = math.ceil(low / step - 1e-9)
-    return [round(i * step, 12 - math.floor(math.log10(step))) for i in range(first, math.floor(high / step + 1e-9) + 1)]
+    first = math.ceil(low / step - NEARLY)
+    return [round(i * step, 12 - math.floor(math.log10(step))) for i in range(first, math.floor(high / step + NEARLY) + 1)]
 
 
 def tick_texts(values):
     """Their texts, with as many digits as tell them apart."""
     largest = max(map(abs, values), default=0.0)
     step = values[1] - values[0] if len(values) > 1 else largest
-    digits = 4 if not step else max(4, min(12, 2 + math.ceil(math.log10(max(1.0, largest / step)))))
+    digits = PLAIN_DIGITS if not step else max(PLAIN_DIGITS, min(12, 2 + math.ceil(math.log10(max(1.0, largest / step)))))
     return [f"{value:.{digits}g}" for value in values]
 
 
 def thinned(x, y):
-    """At most MOST_POINTS, of which none is a peak left out: the smallest and the largest of each piece stay."""
+    """At most MOST_POINTS, of which none is a peak left out: the smallest and the largest of each piece stay, and both ends."""
     if len(x) <= MOST_POINTS:
         return x, y
-    kept = set()
-    for piece in np.array_split(np.arange(len(x)), MOST_POINTS // 2):
+    kept = {0, len(x) - 1}
+    for piece in np.array_split(np.arange(len(x)), MOST_POINTS // 2 - 1):
         finite = piece[np.isfinite(y[piece])]
         kept |= {finite[y[finite].argmin()], finite[y[finite].argmax()]} if len(finite) else {piece[0]}
     chosen = np.array(sorted(kept))
@@ -71,6 +74,15 @@ def pieces(x, y):
     edges = np.flatnonzero(np.diff(good.astype(int))) + 1
     split = zip(np.split(x, edges), np.split(y, edges), strict=True)
     return [(a, b) for a, b in split if len(a) and np.isfinite(a[0]) and np.isfinite(b[0])]
+
+
+def label_lines(text, length):
+    """A label in one line, or in two where it is longer than its axis, parted at the blank that is nearest to its middle."""
+    blanks = [i for i, letter in enumerate(text) if letter == " "]
+    if LETTER * len(text) <= length or not blanks:
+        return [text]
+    at = min(blanks, key=lambda i: abs(2 * i - len(text)))
+    return [text[:at], text[at + 1:]]
 
 
 def legend_places(names, width):
@@ -138,5 +150,6 @@ def line_chart(lines, x_label, y_label, width=470, height=250):
                        f'<text x="{at[0] + 18:.0f}" y="{at[1]}">{html.escape(line.name)}</text>')
     out += [f'<path class="axis" d="M{LEFT} {top}V{bottom}H{right}"/>',
             f'<text x="{(LEFT + right) / 2:.0f}" y="{height - 8}" class="middle">{html.escape(x_label)}</text>',
-            f'<text transform="translate(10 {(top + bottom) / 2:.0f}) rotate(-90)" class="middle">{html.escape(y_label)}</text>']
+            *(f'<text transform="translate({10 + LINE * i} {(top + bottom) / 2:.0f}) rotate(-90)" class="middle">{html.escape(part)}</text>'
+              for i, part in enumerate(label_lines(y_label, bottom - top)))]
     return "".join(out) + "</svg>"

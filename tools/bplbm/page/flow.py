@@ -28,8 +28,9 @@ def cut(frame, size):
     """The frame in two dimensions, or its middle plane normal to y in three."""
     read = frame.middle if len(size) == 3 else lambda name: getattr(frame, name).values
     speed, pressure = np.linalg.norm(read("velocity"), axis=-1), read("pressure")
-    fluid = float(speed.mean()), float(speed.max())
     speed = np.where(np.isfinite(pressure), speed, np.nan)  # there is no pressure where a solid covers a cell whole
+    seen = speed[np.isfinite(speed)]
+    fluid = (float(seen.mean()), float(seen.max())) if len(seen) else (0.0, 0.0)
     return Plane(frame.time, speed, pressure, discs_of(frame, size), bonds_of(frame) if len(size) == 2 else np.zeros((0, 5)),
                  fluid, viscosity_of(read))
 

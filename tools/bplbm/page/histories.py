@@ -5,6 +5,7 @@ import numpy as np
 from bplbm.page.chart import Line, line_chart
 from bplbm.page.sensors import felt
 from bplbm.reading import read_table
+from bplbm.written import unit_text
 
 FEW = 6  # particles that have a curve each
 
@@ -88,8 +89,8 @@ def of_breaks(table, run):
 def of_flow(table, run):
     """The flow that a scene holds, and what drives it."""
     drive = next(column for column in table if column not in ("time", "flow", "wanted"))
-    return [line_chart([Line(name, table["time"], table[name]) for name in ("flow", "wanted")], "time [s]", f"flow that is held [{table.units['flow']}]"),
-            line_chart([Line("", table["time"], table[drive])], "time [s]", f"its {drive.replace('_', ' ')} [{table.units[drive]}]")]
+    return [line_chart([Line(name, table["time"], table[name]) for name in ("flow", "wanted")], "time [s]", f"flow that is held [{unit_text(table.units['flow'])}]"),
+            line_chart([Line("", table["time"], table[drive])], "time [s]", f"its {drive.replace('_', ' ')} [{unit_text(table.units[drive])}]")]
 
 
 def of_obstacles(table, run):

@@ -18,13 +18,13 @@ class Cell:
 
 
 def text(value):
-    """What is shown of a value; numbers with four digits."""
+    """What is shown of a value; numbers with five digits, as on the terminal."""
     if value is None:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, numbers.Real):
-        return f"{value:.4g}" if isinstance(value, float) else str(value)
+        return f"{value:.5g}" if isinstance(value, float) else str(value)
     return str(value)
 
 

@@ -19,6 +19,7 @@ from bplbm.project import INSTALLED, ROOT, repeated
 from bplbm.quantities import not_told
 from bplbm.results import Run
 from bplbm.toml_text import read_laid_over, toml
+from bplbm.written import error_text, share_text
 
 PARTS = {"sweep": "#1f6fb4", "placing": "#7a5bb0", "loads": "#2f8f4e", "exchange": "#b8860b", "output": "#6b7280",
          "waiting": "#d9dee5", "contacts": "#1f6fb4", "neighbours": "#7a5bb0", "ranks": "#b8860b", "other": "#2f8f4e"}
@@ -33,12 +34,11 @@ def named_unit(number):
 
 def judged(r, not_judged=""):
     """The row of a result; not_judged: why it counts for nothing."""
-    error = f"{100 * r['error']:+.2f} %"
     verdict = '<span class="good">pass</span>' if r["pass"] else '<span class="bad">miss</span>'
     if not_judged:
         verdict = f'<span class="note">not judged: {html.escape(not_judged)}</span>'
     return [r["name"], r["value"], named_unit(r), r["reference"],
-            Cell("0.00 %" if error == "-0.00 %" else error, r["error"], "n"), Cell(f"{100 * r['tolerance']:.2g} %", r["tolerance"], "n"), Cell(verdict, r["pass"]), r["source"]]
+            Cell(error_text(r["error"]), r["error"], "n"), Cell(f"{100 * r['tolerance']:.2g} %", r["tolerance"], "n"), Cell(verdict, r["pass"]), r["source"]]
 
 
 def results(run):
@@ -55,7 +55,7 @@ def bar(seconds, whole, name):
     parts = {part: s for part, s in seconds.items() if s > 0.002 * whole}
     spans = "".join(f'<span style="width:{100 * s / whole:.2f}%;background:{PARTS.get(part, "#999")}" title="{part}"></span>'
                     for part, s in parts.items())
-    entries = [f'<span style="color:{PARTS.get(part, "#999")}">■</span> {MEANING.get(part, part)} {100 * s / whole:.0f} %'
+    entries = [f'<span style="color:{PARTS.get(part, "#999")}">■</span> {MEANING.get(part, part)} {html.escape(share_text(s / whole))}'
                for part, s in sorted(parts.items(), key=lambda item: -item[1])]
     return (f'<p style="margin:8px 0 0"><b>{name}</b>, {whole:.3g} s</p><div class="bar">{spans}</div>'
             f'<p class="soft">{" · ".join(entries)}</p>')
@@ -146,7 +146,7 @@ def write_page(folder, scene, files, words, line):
     written = time.localtime((run.folder / "summary.json").stat().st_mtime)
     text = page(title, f"<h1>{html.escape(title)}</h1>",
                 f'<p class="soft">{html.escape(scene.heading())} · {s["physical_seconds"]:.6g} s of flow in '
-                f'{s["wall_seconds"]:.3g} s, {html.escape(s["ending"])} · {time.strftime("%Y-%m-%d %H:%M", written)}</p>',
+                f'{s["wall_seconds"]:.3g} s, {html.escape(s.get("not_judged") or s["ending"])} · {time.strftime("%Y-%m-%d %H:%M", written)}</p>',
                 section("Results", *results(run)),
                 f'<div class="row"><div>{section("Set-up", setup(run, tables, scene.folder))}</div>'
                 f'<div style="flex:1;min-width:320px">{section("Flow", moving)}</div></div>',

@@ -7,6 +7,7 @@ from bplbm.page.chart import COLORS, Line, line_chart
 from bplbm.page.html import table as html_table
 from bplbm.page.picture import HOT, TWO_SIDED, Scale, coarser, data_url, png
 from bplbm.reading import read_table
+from bplbm.written import unit_text
 
 PROFILES = 5  # times of a line that are drawn
 PART = 1e-3  # a component that is smaller than this part of the largest one is not drawn
@@ -51,7 +52,7 @@ def against_time(tables, columns, label):
         for column in felt(table, columns):
             which = f"{name}, {column[-1]}" if len(columns) > 1 else name
             lines.append(Line(which, table["time"], table[column]))
-            unit = table.units[column]
+            unit = unit_text(table.units[column])
     return [line_chart(lines[k:k + len(COLORS)], "time [s]", f"{label} [{unit}]") for k in range(0, len(lines), len(COLORS))]
 
 
@@ -61,7 +62,7 @@ def of_line(name, table):
     shown = times[np.unique(np.linspace(0, len(times) - 1, PROFILES).round().astype(int))]
     drawn = []
     for column in [*felt(table, ["ux", "uy", "uz"]), "pressure"]:
-        what = f"{name}: {'pressure' if column == 'pressure' else f'velocity in {column[-1]}'} [{table.units[column]}]"
+        what = f"{name}: {'pressure' if column == 'pressure' else f'velocity in {column[-1]}'} [{unit_text(table.units[column])}]"
         rows = [table.where(table["time"] == t) for t in shown]
         drawn.append(line_chart([Line(f"{t:.4g} s", r["distance"], r[column]) for t, r in zip(shown, rows, strict=True)],
                                 "distance along the line [m]", what))
