@@ -39,11 +39,11 @@ ViscosityScene read_viscosity(TableReader t) {
   if (parts.consistency)
     v.consistency = t.number("consistency", Bounds::positive(), parts.index ? "Pa sⁿ" : "Pa s");
   if (parts.index) v.index = t.number("index", {0.1, 2.0}, "");
-  if (v.model == ViscosityModel::Carreau && v.index >= 1.0)
+  if (parts.bounds && parts.index && v.index >= 1.0)
     t.fail("index",
-           fmt::format("= {:.6g} does not thin: Carreau's law goes from nu_max at rest to nu_min, "
+           fmt::format("= {:.6g} does not thin: model = \"{}\" goes from nu_max at rest to nu_min, "
                        "which n < 1 does",
-                       v.index),
+                       v.index, name),
            v.index == 1.0 ? "take n < 1, or model = \"newtonian\""
                           : "take n < 1; what thickens is a power_law with n > 1");
   if (parts.time_constant) v.time_constant = t.number("time_constant", Bounds::positive(), "s");

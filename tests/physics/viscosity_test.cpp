@@ -17,14 +17,50 @@ using std::numbers::pi;
 using test::Gel, test::parameters, test::parameters_beside, test::settled;
 using Regularisation = ViscosityScene::Regularisation;
 
+/// A fluid that thins from nu_max at rest to nu_min, in units of its shear rate and stress at the
+/// wall.
+struct Thinning {
+  ViscosityScene::Model model;
+  double index;
+  double (*factor)(double rate, double index);  ///< (ν - nu_min)/(nu_max - nu_min) for λ = 1
+  double thinnest = 1e-2;                       ///< nu_min over nu_max
+  double fastest = 4.0;                         ///< λ times the shear rate at the wall
+
+  /// ν over nu_max.
+  double part(double rate) const {
+    return thinnest + (1.0 - thinnest) * factor(fastest * rate, index);
+  }
+  ViscosityLaw law(double tau, double shear_rate) const {
+    const double nu_max = (tau - 0.5) / 3.0 / part(1.0);
+    FluidScene fluid{.density = 1.0};
+    fluid.law = {.model = model,
+                 .index = index,
+                 .time_constant = fastest / shear_rate,
+                 .nu_min = thinnest * nu_max,
+                 .nu_max = nu_max};
+    return {fluid, shear_rate};
+  }
+  /// At a stress, by bisection of the formula.
+  double shear_rate(double stress) const {
+    double low = 0.0, high = 1.0;
+    for (int half = 0; half < 60; ++half) {
+      const double rate = 0.5 * (low + high);
+      (rate * part(rate) < stress * part(1.0) ? low : high) = rate;
+    }
+    return low;
+  }
+};
+
 struct Channel {
   double error;     ///< of the flow rate
   double plug;      ///< width of what is not sheared, over the channel's
   double at_bound;  ///< share of cells at nu_max
 };
 
-/// A channel of some cells under a body force, whose walls have τ = 1.
-Channel plane_channel(const Gel& gel, int height) {
+/// A channel of some cells under a body force, whose walls have τ = 1. @param gel  a Gel, or what
+/// has its law() and shear_rate()
+template <class Liquid = Gel>
+Channel plane_channel(const Liquid& gel, int height) {
   constexpr double tau = 1.0;
   const double wall_rate = 2.56 / (height * height);  // diffusive scaling
   const ViscosityLaw law = gel.law(tau, wall_rate);
@@ -74,6 +110,19 @@ TEST(PlanePoiseuille, PowerLawFlowRates) {
     record("error32", n, fine);
     EXPECT_LT(std::abs(fine), 0.0025) << "n = " << n;
     EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.3) << "n = " << n;
+  }
+}
+
+// Second order as well. Another law between two viscosities is another element of this list.
+TEST(PlanePoiseuille, FlowRatesBetweenTwoViscosities) {
+  using Model = ViscosityScene::Model;
+  const Thinning liquids[] = {{Model::Carreau, 0.5, [](double rate, double n) {
+                                 return std::pow(1.0 + rate * rate, 0.5 * (n - 1.0));
+                               }}};
+  for (const Thinning& liquid : liquids) {
+    const double coarse = plane_channel(liquid, 16).error, fine = plane_channel(liquid, 32).error;
+    EXPECT_LT(std::abs(fine), 0.0025) << name_of(liquid.model);
+    EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.3) << name_of(liquid.model);
   }
 }
 

@@ -24,6 +24,7 @@ from bplbm.written import error_text, with_unit
 
 OUT_OF_TOLERANCE = 4
 FAULT = 1
+WITH_SCRIPT = ("liggghts", "lammps")  # engines that read in.NAME in the scene's folder
 
 
 def command(args, out):
@@ -48,17 +49,20 @@ def solid_command(args, out):
     if args.engine_command:
         places = {"{folder}": str(args.scene.folder), "{out}": str(out)}
         return [re.sub(r"\{folder\}|\{out\}", lambda found: places[found[0]], word) for word in args.engine_command]
-    if args.engine in ("reference", "c", "fortran"):
-        return [str(BIN / f"{args.engine}_engine")]
-    if args.engine in ("python", "yade"):
-        return ["/usr/bin/python3", str(TOOLS / "engines" / args.engine / "engine.py")]
+    program = engine_program(args.engine)
+    if args.engine not in WITH_SCRIPT:
+        return ["/usr/bin/python3", str(program)] if program.suffix == ".py" else [str(program)]
     script = args.scene.script(args.engine)
     if not script.exists():
         fail(f"{args.scene.name} has no {script.name}; write one, or leave --engine out")
     common = ["-in", str(script), "-log", str(out / f"{args.engine}.log"), "-screen", "none"]
-    if args.engine == "lammps":
-        return [str(BIN / "lammps_engine"), *common]
-    return [str(BIN / "liggghts"), *common, "-var", "out_folder", str(out)]
+    return [str(program), *common] + (["-var", "out_folder", str(out)] if args.engine == "liggghts" else [])
+
+
+def engine_program(engine):
+    """The file of an engine: tools/engines/NAME/engine.py, or where there is none what is compiled as NAME_engine."""
+    script = TOOLS / "engines" / engine / "engine.py"
+    return script if script.exists() else BIN / (engine if engine == "liggghts" else f"{engine}_engine")
 
 
 def take_folder(args, out, look=False):
@@ -268,10 +272,10 @@ def programs(args):
     needed = []
     if not args.scene.is_solid_alone:
         needed.append("lbm_2d" if args.scene.dimension == 2 and not (BIN / "lbm").exists() else "lbm")
-    if args.engine in ("lammps", "reference", "c", "fortran"):
-        needed.append(f"{args.engine}_engine")
-    elif args.engine == "liggghts" and not args.engine_command and (args.scene.is_coupled or args.scene.is_solid_alone):
-        needed.append("liggghts")
+    program = engine_program(args.engine)
+    used = not args.engine_command and (args.scene.is_coupled or args.scene.is_solid_alone)
+    if program.suffix != ".py" and (used or args.engine != "liggghts"):
+        needed.append(program.name)
     return needed
 
 
@@ -287,7 +291,7 @@ def check_programs(args):
             and not (BIN / "liggghts").exists():
         fail(f"{BIN / 'liggghts'} is missing: run tools/build, or take an engine that does without LIGGGHTS "
              "(--engine reference or python, --engine-command)")
-    if args.engine in ("lammps", "reference") and INSTALLED and not (BIN / f"{args.engine}_engine").exists():
+    if INSTALLED and args.engine != "liggghts" and not engine_program(args.engine).exists():
         fail(f"--engine {args.engine} is not part of the package; build BPLBM from its sources for it")
     if shutil.which("mpirun") is None:
         fail(f"mpirun not found; {'install openmpi-bin' if INSTALLED else 'run tools/install'}")
@@ -296,7 +300,7 @@ def check_programs(args):
 def check_blanks(args, out):
     """Refuses folders with a blank in their name where the script of the solid needs them."""
     scene = args.scene
-    if (scene.is_coupled or scene.is_solid_alone) and args.engine in ("liggghts", "lammps") and not args.engine_command:
+    if (scene.is_coupled or scene.is_solid_alone) and args.engine in WITH_SCRIPT and not args.engine_command:
         if why := blanks.refusal(scene.script(args.engine), scene.folder, out, args.restart):
             fail(why)
 

@@ -189,7 +189,10 @@ class Launch(unittest.TestCase):
     def test_each_engine_and_any_command_can_be_the_solid(self):
         self.assertTrue(self.solid()[0].endswith("/bin/liggghts"))
         self.assertTrue(self.solid("--engine", "lammps")[0].endswith("/bin/lammps_engine"))
-        self.assertTrue(self.solid("--engine", "yade")[1].endswith("/engines/yade/engine.py"))
+        for name in ("reference", "c", "fortran"):
+            self.assertTrue(self.solid("--engine", name)[0].endswith(f"/bin/{name}_engine"))
+        for name in ("yade", "python"):
+            self.assertTrue(self.solid("--engine", name)[1].endswith(f"/engines/{name}/engine.py"))
         self.assertEqual(self.solid("--engine-command", "python3 'my engine.py' {folder}/in.{x} {out}/log"),
                          ["python3", "my engine.py", f"{ROOT}/cases/settling_disc/in.{{x}}", "/somewhere/log"])
 
