@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
-from bplbm import Run, draw_slice, draw_viscosity, quantity, read_table, result, studies
+from bplbm import Run, draw_slice, draw_viscosity, fall_in_layers, quantity, read_table, result, studies
 
 NEWTONIAN = "fluid-newtonian"
 FLUIDS = {"": (1.0, 0.5), NEWTONIAN: (0.0966, 1.0)}  # consistency [Pa sⁿ], index
@@ -53,21 +53,14 @@ class Slot:
         return v
 
 
-def history(run, slot):
-    """Rows of the grains after the flow has developed, y from the middle, with their fall: the velocity downward against
-    the mixture at their own place between the walls, since the mixture sinks in the middle, too."""
+def history(run):
+    """Rows of the grains after the flow has developed, y from the middle, with their fall against the mixture at their own
+    place between the walls: it sinks in the middle, too."""
     table, p = read_table(run.folder / "probes.csv"), run.parameters
     late = table["time"] > DEVELOPED * table["time"].max()
     rows = {name: column[late] for name, column in table.items()}
+    rows["fall"] = fall_in_layers(run, rows)
     rows["y"] = rows["y"] - 0.5 * p["box_y"]
-    times = [frame.time for frame in run.fields]
-    layers = np.array([np.asarray(frame.velocity)[..., 2].mean(axis=(0, 2)) for frame in run.fields])
-    y = (np.arange(layers.shape[1]) + 0.5) * p["cell"] - 0.5 * p["box_y"]
-    rows["fall"] = -rows["vz"]
-    for time in np.unique(rows["time"]):
-        mixture = [np.interp(time, times, layer) for layer in layers.T]
-        now = rows["time"] == time
-        rows["fall"][now] += slot.over_grain(rows["y"][now], p["diameter"], lambda at, v=mixture: np.interp(at, y, v))
     return rows
 
 
@@ -95,7 +88,7 @@ def transport(run, name):
     profile = np.mean([np.asarray(frame.velocity)[..., 0].mean(axis=(0, 2)) for frame in frames], axis=0)
     y = (np.arange(len(profile)) + 0.5) * p["cell"] - 0.5 * p["box_y"]
     slot = Slot(*FLUIDS[name], p["box_y"], profile.mean())
-    grains, d = history(run, slot), p["diameter"]
+    grains, d = history(run), p["diameter"]
     stress = (p["particle_density"] - p["density"]) * -p["gravity_z"] * d
     return Transport(slot, y, profile, grains, grains["vx"].mean(),
                      slot.over_grain(grains["y"], d, slot.velocity).mean(), slot.settling(grains["y"], d, stress))

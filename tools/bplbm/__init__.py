@@ -8,7 +8,7 @@ Names are taken from their modules when they are first asked for, so that `impor
 
 import importlib
 
-_RESULTS = ("Run", "quantity", "read_table", "result", "studies", "write_table")
+_RESULTS = ("Run", "fall_in_layers", "quantity", "read_table", "result", "studies", "write_table")
 _READING = ("Field", "Frame", "Table")
 _PICTURES = ("UNITS", "animate", "drag_results", "draw_bonds", "draw_breaks", "draw_errors", "draw_slice", "draw_snapshots", "draw_speed",
              "draw_viscosity", "read_breaks")

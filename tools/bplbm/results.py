@@ -33,6 +33,26 @@ def studies(run):
             if (f / "summary.json").exists()}
 
 
+def fall_in_layers(run, rows):
+    """Velocity of particles downward (-z) against the mixture around them [m/s], [rows]: what the layers of cells that one
+    lies in across y have on the mean, over x, z and its volume. Covered cells have the particles' velocity.
+    rows: columns time, y, vz of probes of spheres of one diameter. A run without fields or in 2D has no layers: ValueError."""
+    frames = list(run.fields)
+    if not frames or np.ndim(frames[0].velocity) != 4:
+        raise ValueError(f"{run.folder}: no fields of three dimensions; give output.fields_every")
+    times = [frame.time for frame in frames]
+    layers = np.array([np.asarray(frame.velocity)[..., 2].mean(axis=(0, 2)) for frame in frames])
+    y = run.parameters["box_y"] * (np.arange(layers.shape[1]) + 0.5) / layers.shape[1]
+    points, weights = np.polynomial.legendre.leggauss(12)
+    weights = weights * (1 - points**2) / np.sum(weights * (1 - points**2))
+    fall = -np.asarray(rows["vz"], dtype=float)
+    for time in np.unique(rows["time"]):
+        now = rows["time"] == time
+        mixture = [np.interp(time, times, layer) for layer in layers.T]
+        fall[now] += np.interp(rows["y"][now][:, None] + 0.5 * run.parameters["diameter"] * points, y, mixture) @ weights
+    return fall
+
+
 class Run:
     """The output folder of one run: summary and parameters at once, all else when it is asked for."""
 

@@ -71,6 +71,17 @@ TEST(ViscosityAdvice, TellsWhatAYieldStressCostsBesideAStep) {
             "which allows no longer step: the run takes 3e+08 steps");
 }
 
+// 0.2 m²/s, beyond which a coupled scene's kinematic_viscosity is asked for its unit.
+TEST(ViscosityAdvice, NamesNoKeyThatTheSceneLacks) {
+  const test::TemporaryFolder folder;
+  const Plan plan =
+      make_plan(read_scene({BPLBM_SOURCE_DIR "/cases/proppant_in_gel/scene.toml",
+                            folder.write("thick.toml",
+                                         "[fluid.viscosity]\nconsistency = 2e3\nnu_max = 10.0\n"
+                                         "[numerics]\ntime_step = 1.6e-8\n")}));
+  expect_out(fmt::format("{}", fmt::join(plan.warnings, "\n")), "kinematic_viscosity");
+}
+
 TEST(ViscosityAdvice, CuresWhatIsAbsurd) {
   const auto gel = [](double consistency, const std::string& rest = "") {
     return fmt::format("model = \"power_law\", index = 0.5, consistency = {:.9e}{}", consistency,

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 import unittest.mock
 
@@ -193,6 +194,25 @@ class Folder(unittest.TestCase):
         (self.folder / "error.log").write_text("lbm | error | too fast\n")
         with self.assertRaisesRegex(FileNotFoundError, "this run has failed .*: too fast; .*error.log holds all"):
             bplbm.Run(self.folder)
+
+
+class FallInLayers(unittest.TestCase):
+    """The mixture moves at y t m/s: a sphere's layers have that of its middle."""
+
+    @staticmethod
+    def run_of(velocity):
+        fields = [types.SimpleNamespace(time=time, velocity=velocity * time) for time in (0.0, 2.0)]
+        return types.SimpleNamespace(folder="here", fields=fields, parameters={"box_y": 4.0, "diameter": 1.0})
+
+    def test_is_against_the_mixture_at_each_ones_height(self):
+        velocity = np.zeros((3, 8, 5, 3))
+        velocity[..., 2] = (np.arange(8) + 0.5)[None, :, None] / 2
+        rows = {"time": np.array([0.0, 1.0, 1.0]), "y": np.array([1.0, 1.0, 2.5]), "vz": np.array([-0.25, 0.5, 0.5])}
+        np.testing.assert_allclose(bplbm.fall_in_layers(self.run_of(velocity), rows), [0.25, 0.5, 2.0], atol=1e-12)
+
+    def test_two_dimensions_have_none(self):
+        with self.assertRaisesRegex(ValueError, "three dimensions"):
+            bplbm.fall_in_layers(self.run_of(np.zeros((8, 5, 2))), {})
 
 
 if __name__ == "__main__":
