@@ -4,7 +4,6 @@ import base64
 import html
 import io
 
-import matplotlib.image
 import numpy as np
 
 from bplbm import shapes
@@ -99,6 +98,7 @@ class Drawing:
         seen = parts if parts.ndim == 2 else parts.max(axis=1)
         pixels = np.zeros((*seen.shape, 4))
         pixels[..., :3], pixels[..., 3] = 0.6, seen[::-1]
+        import matplotlib.image  # half of what a page takes, and few scenes have images
         out = io.BytesIO()
         matplotlib.image.imsave(out, pixels, format="png")
         (left, top), (right, bottom) = self.place((x0, z1)), self.place((x1, z0))
