@@ -44,6 +44,7 @@ class Values(unittest.TestCase):
 
     def test_keys_of_one_name_are_told_apart(self):
         self.assertEqual(planned(["fluid.density=1", "particles.density=2"])[0][0], "fluid.density-1_particles.density-2")
+        self.assertEqual(planned(["fluid.gravity[1]=-1", "boundary[0].pressure=7"])[0][0], "gravity_1--1_pressure-7")
 
     def test_an_entry_of_a_list_keeps_the_others(self):
         overlay = planned(["boundary[0].pressure=7"])[0][1]
