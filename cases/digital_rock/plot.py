@@ -35,8 +35,8 @@ def main():
                "momentum balance of steady flow", 1e-3)],
         [quantity("permeability over Kozeny-Carman's", permeability(run) / kozeny, "1")])
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.2), width_ratios=(1, 1.5))
-    image = draw_slice(left, run, run.frames()[-1][1], "y", length_unit=1e-3)
-    figure.colorbar(image, ax=left, label="speed [m/s]")
+    image = draw_slice(left, run, run.frames()[-1][1], "y", at=0.1 * side, length_unit=1e-3)  # the pores are wide there
+    figure.colorbar(image, ax=left, label="speed [µm/s]", format=lambda value, _: f"{1e6 * value:.0f}")
     left.set_xticks([0.0, 0.5, 1.0])
     names = {"set-fine": "grey, a cell a voxel", "variant-averaged": "cut at a threshold, averaged",
              "variant-staircase": "cut at a threshold, a cell a voxel"}

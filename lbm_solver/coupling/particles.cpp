@@ -151,6 +151,10 @@ void Particles::find_past() {
   }
 }
 
+std::int64_t Particles::carriers_at_home() const {
+  return std::ranges::count_if(carriers_, &Carrier::home);
+}
+
 Vec3 Particles::weight_in_fluid() const {
   double mass = 0.0;
   for (const Carrier& carrier : carriers_) {

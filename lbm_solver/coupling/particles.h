@@ -49,6 +49,8 @@ class Particles {
   /// Where the spheres are `elapsed` seconds after the interval began.
   std::span<const Body> bodies(double elapsed);
 
+  /// How many carriers (spheres and clumps) have their home on this rank.
+  std::int64_t carriers_at_home() const;
   /// Weight less buoyancy [N] of the carriers whose home this rank is.
   Vec3 weight_in_fluid() const;
 

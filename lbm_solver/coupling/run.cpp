@@ -132,8 +132,10 @@ class CoupledRun {
       particles_.tell(arrival.report);
       if (particles_.has_clumps()) expect_takes_clumps(plan_.scheme);
       if (scene_.coupling->carry_weight) carry_weight(interval);
-      if (interval == 0)
+      if (interval == 0) {
+        warn_of_count(partner_.particles, ranks_, particles_, log_);
         observers_.remember(warn_of_starts(scene_, plan_, *fluid_, particles_, log_));
+      }
       place(0);
       observers_.at_state(interval, *fluid_, &particles_, last);
       clock_.charge("output");

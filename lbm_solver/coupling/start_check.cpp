@@ -106,4 +106,17 @@ DeepStarts warn_of_starts(const Scene& s, const Plan& plan, const Fluid& fluid,
   return found;
 }
 
+void warn_of_count(const std::optional<std::int64_t>& told, const Decomposition& ranks,
+                   const Particles& particles, Log& log) {
+  if (!told) return;
+  double here = static_cast<double>(particles.carriers_at_home());
+  ranks.sum({&here, 1});
+  if (here == static_cast<double>(*told)) return;
+  log.say(0, "warning",
+          "the solid's handshake counts {} particles (a clump is one), {:.0f} of them lie in the "
+          "box at the start: the fluid acts on no other; look at what the solid sends, and where "
+          "its particles begin",
+          *told, here);
+}
+
 }  // namespace lbm

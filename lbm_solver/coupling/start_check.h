@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "lbm_solver/coupling/particles.h"
@@ -22,5 +23,10 @@ using DeepStarts = std::map<std::int64_t, std::string>;
 ///                     direction
 DeepStarts warn_of_starts(const Scene& scene, const Plan& plan, const Fluid& fluid,
                           const Particles& particles, Log& log);
+
+/// Warns where the solid's handshake counts other particles than lie in the box. Collective.
+/// @param told  what it counts; empty: it does not say
+void warn_of_count(const std::optional<std::int64_t>& told, const Decomposition& ranks,
+                   const Particles& particles, Log& log);
 
 }  // namespace lbm

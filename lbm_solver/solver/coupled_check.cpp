@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "lbm_solver/viscosity/viscosity_law.h"
+
 namespace lbm {
 namespace {
 
@@ -62,7 +64,8 @@ void check_interval(const Scene& s, Plan& plan) {
 }
 
 void check_viscosity(const Scene& s, Plan& plan) {
-  if (s.fluid.viscosity > kThick)
+  const bool law = parts_of(s.fluid.law.model).varies;  // plan_viscosity looks at these
+  if (s.fluid.viscosity > kThick && !law)
     plan.warnings.push_back(fmt::format(
         "fluid.kinematic_viscosity = {:.3g} m²/s is unusually large for a liquid (water: 1e-6); "
         "kinematic viscosity is in m²/s",

@@ -13,6 +13,7 @@
 #include "lbm_solver/solver/expected_error.h"
 #include "lbm_solver/solver/place_check.h"
 #include "lbm_solver/solver/scene_check.h"
+#include "lbm_solver/solver/viscosity_advice.h"
 #include "lbm_solver/solver/viscosity_plan.h"
 
 namespace lbm {
@@ -22,7 +23,6 @@ constexpr double kStepFractionOfContact = 0.1;  // solid step / √(m/k): the pa
 constexpr double kLimitReynoldsCell = 5.0;      // beyond: fixed-Λ TRT gives noisy forces
 constexpr double kDensityChange = 0.03;         // that a pressure difference may cause
 constexpr double kLeastMagic = 0.05, kLargestMagic = 0.375;  // where resistance is positive
-constexpr double kMostSteps = 1e12;
 constexpr double kFewCells = 4.0;  // a diameter below which nothing is claimed
 
 double cell_size(const Scene& s) {
@@ -88,17 +88,6 @@ void take_step(const Scene& s, Plan& plan) {
   plan.step_limit = choice.words;
 }
 
-/// What makes the step longer, by what binds it.
-std::string way_to_fewer_steps(const Scene& s, StepBound bound) {
-  const std::string less = "take a coarser cell or an earlier end, or a ";
-  if (bound == StepBound::Given) return less + "longer numerics.time_step";
-  if (bound == StepBound::Speed) return less + "smaller fluid.velocity_scale";
-  if (bound == StepBound::Pressure) return less + "smaller difference of pressures";
-  if (s.fluid.law.yield_stress == 0.0) return less + "thinner fluid: is the viscosity in m²/s?";
-  return fmt::format("fluid.viscosity.yield_stress = {:.4g} Pa: {}", s.fluid.law.yield_stress,
-                     kLowerYield);
-}
-
 /// Rounds the step down so that the end time is a whole number of intervals. A run that goes on has
 /// its step already: rounded to another end time it would be another one, and the states of the
 /// checkpoint, in lattice units, would mean another flow. It ends with the interval that reaches
@@ -111,20 +100,12 @@ void fit_to_end(const Scene& s, std::optional<double> given, Plan& plan) {
   if (intervals > kMostSteps)
     throw InputError(s.file + ": run.end_time",
                      fmt::format("needs {:.2g} steps [{}]", intervals, plan.step_limit),
-                     way_to_fewer_steps(s, plan.step_bound));
+                     way_to_fewer_steps(s, plan, intervals / kMostSteps));
   plan.intervals = std::max<std::int64_t>(1, static_cast<std::int64_t>(intervals));
   plan.units.dt = s.numerics.time_step || given
                       ? wished
                       : s.end_time / (static_cast<double>(plan.intervals) * plan.fluid_steps);
   plan.lattice_speed = plan.units.dx / plan.units.dt;
-}
-
-/// What makes τ - ½ larger, and may be done where something else than τ binds the step.
-const char* way_to_larger_tau(StepBound bound) {
-  if (bound == StepBound::Given) return "take a finer cell, or a longer numerics.time_step";
-  if (bound == StepBound::Pressure)
-    return "take a finer cell, or a smaller difference of pressures, which binds the step";
-  return "take a finer cell, or a lower fluid.velocity_scale if nothing is that fast";
 }
 
 /// @throws InputError  no fluid can be computed with this step
@@ -136,15 +117,15 @@ void check_step(const Scene& s, const Plan& plan) {
         fmt::format("gives velocity_scale/C = {:.3g}, above {} (compressible)", plan.u_over_c,
                     kStopSpeed),
         fmt::format("take at most {:.3g} s", kWarnSpeed * plan.units.dx / s.fluid.velocity_scale));
-  if (tau - 0.5 < 1e-6)
+  if (tau - 0.5 < kLeastExcess)
     throw InputError(
         s.file + ": numerics",
         fmt::format("τ - ½ = 3 ν Δt/Δx² = {:.2g} is too small for round-off", tau - 0.5),
         way_to_larger_tau(plan.step_bound));
-  if (tau > 3.0)
+  if (tau > kStopTau)
     throw InputError(
         s.file + ": numerics.time_step",
-        fmt::format("gives τ = {:.3g}, above 3: walls and solids would be inexact", tau),
+        fmt::format("gives τ = {:.3g}, above {}: walls and solids would be inexact", tau, kStopTau),
         fmt::format("take at most {:.3g} s",
                     plan.units.dx * plan.units.dx / (3.0 * s.fluid.viscosity)));
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "lbm_solver/base/errors.h"
@@ -16,6 +17,7 @@ namespace {
 constexpr double kLittle = 0.5;        // of a boundary that a profile covers
 constexpr double kMuch = 10.0;         // of a boundary's length, or a run's time, that a table has
 constexpr double kMoment = 1e-3;       // of a run's time that a table has
+constexpr double kAMinute = 0.02;      // the same: what minutes make of seconds is a sixtieth
 constexpr double kStepsATable = 20.0;  // that repeats
 
 /// ", are they in µm?" where a table is that much too large.
@@ -44,6 +46,12 @@ void check_times(const Scene& s, const TimeTableScene& table, const std::string&
                     key, times.back(), s.end_time, factors.back()));
 }
 
+/// Whether factors go one way only and end with something, as those of a soft start do.
+bool is_ramp(const std::vector<double>& factors) {
+  return factors.back() != 0.0 &&
+         (std::ranges::is_sorted(factors) || std::ranges::is_sorted(factors, std::greater()));
+}
+
 /// A table of which the run sees little, or that it leaves behind at once.
 void check_span(const Scene& s, const TimeTableScene& table, const std::string& key, Plan& plan) {
   std::vector<double> times = table.times;
@@ -54,6 +62,11 @@ void check_span(const Scene& s, const TimeTableScene& table, const std::string& 
   if (times.size() < 2) return;
   if (const std::string odd = odd_times(times, table.repeats, s.end_time); !odd.empty())
     plan.warnings.push_back(key + " " + odd);
+  else if (!table.repeats && times.back() < kAMinute * s.end_time && !is_ramp(factors))
+    plan.warnings.push_back(fmt::format(
+        "{} ends at {:.4g} s, after {:.2g} % of the run, and from then on has its last factor, "
+        "{:.4g}; its times are in seconds, are they in minutes or hours?",
+        key, times.back(), 100.0 * times.back() / s.end_time, factors.back()));
 }
 
 /// A table whose times the step does not resolve.

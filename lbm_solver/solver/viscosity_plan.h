@@ -11,10 +11,6 @@ namespace lbm {
 /// @throws InputError
 void plan_viscosity(const Scene& scene, Plan& plan);
 
-/// What to do about a yield stress that is too large.
-inline constexpr const char* kLowerYield =
-    "is it in Pa? take a lower one, or the fluid.viscosity.shear_rate at which the fluid flows";
-
 /// What `lbm check` says of it, one line each: law, range, relaxation times, dimensionless groups;
 /// empty for a Newtonian fluid.
 std::vector<std::string> describe_viscosity(const Scene& scene, const Plan& plan);

@@ -57,6 +57,12 @@ Channel plane_channel(const Gel& gel, int height) {
           viscosity_use(fluid, parameters(law, tau)).at_rest_bound};
 }
 
+/// Keeps a number for the test's report (--gtest_output=xml), by the fluid's index.
+void record(const std::string& what, double index, double value) {
+  testing::Test::RecordProperty(what + "_n" + std::to_string(index).substr(0, 3),
+                                std::to_string(value));
+}
+
 // Second order in the cell; 1 % at 32 cells is what is asked for, 0.25 % what is there. With n =
 // 0.5 and 0.8 errors of both signs add up, so that only the fluid that is farthest off shows its
 // order.
@@ -64,6 +70,8 @@ TEST(PlanePoiseuille, PowerLawFlowRates) {
   for (const double n : {0.5, 0.8, 1.5}) {
     const double coarse = plane_channel({.index = n}, 16).error,
                  fine = plane_channel({.index = n}, 32).error;
+    record("error16", n, coarse);
+    record("error32", n, fine);
     EXPECT_LT(std::abs(fine), 0.0025) << "n = " << n;
     EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.3) << "n = " << n;
   }
@@ -72,6 +80,8 @@ TEST(PlanePoiseuille, PowerLawFlowRates) {
 TEST(PlanePoiseuille, BinghamAndHerschelBulkleyFlowRatesAndPlug) {
   for (const double n : {1.0, 0.5}) {
     const Channel flow = plane_channel({.index = n, .yield_part = 0.5}, 32);
+    record("error32", n, flow.error);
+    record("plug", n, flow.plug);
     EXPECT_LT(std::abs(flow.error), 0.005) << "n = " << n;
     // half of the channel is a plug; a stiff cell more or less on either side, more for n = 0.5,
     // where the shear rate grows slowly from the plug's edge
@@ -122,8 +132,13 @@ TEST(PlaneCouette, IsStraightWithoutSlipInEveryFluid) {
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < 8; ++x) fluid.set_equilibrium(x, y, 1.0, {rate * (y + 0.5), 0.0});
     fluid.advance(8000);
-    for (int y = 0; y < n; ++y)
-      EXPECT_NEAR(fluid.cell(3, y).u.x() / lid, (y + 0.5) / n, 2e-4) << gel.index << ' ' << y;
+    double most = 0.0;
+    for (int y = 0; y < n; ++y) {
+      const double off = fluid.cell(3, y).u.x() / lid - (y + 0.5) / n;
+      most = std::max(most, std::abs(off));
+      EXPECT_NEAR(off, 0.0, 2e-4) << gel.index << ' ' << y;
+    }
+    record("off_in_1e6", gel.index, 1e6 * most);
     const ViscosityUse use = viscosity_use(fluid, parameters(gel.law(tau, rate), tau));
     EXPECT_NEAR(use.largest_shear / rate, 1.0, 2e-3) << gel.index;
     EXPECT_NEAR(use.mean_viscosity * 3.0 / (tau - 0.5), 1.0, 3e-3) << gel.index;
@@ -156,8 +171,11 @@ Annulus taylor_couette(double index, double inner, double outer) {
 }
 
 TEST(TaylorCouette, TorqueOfAPowerLawFluid) {
-  for (const double n : {0.5, 0.8, 1.5})
-    EXPECT_NEAR(taylor_couette(n, 10.0, 20.0).torque, 1.0, 0.02) << n;
+  for (const double n : {0.5, 0.8, 1.5}) {
+    const double torque = taylor_couette(n, 10.0, 20.0).torque;
+    record("torque", n, torque);
+    EXPECT_NEAR(torque, 1.0, 0.02) << n;
+  }
 }
 
 // A fifth of the gap's cells are covered in part: they count with their fluid, and its stress.
@@ -188,14 +206,19 @@ double sphere_drag(double index, double radius) {
 // The references are those of a variational solution of the same problem (docs/viscosity.md); 5 %
 // is what is asked for at ten cells across.
 TEST(Sphere, DragInAPowerLawFluid) {
-  EXPECT_NEAR(sphere_drag(0.5, 5.0) / 1.7104, 1.0, 0.05);
+  const double part = sphere_drag(0.5, 5.0) / 1.7104;
+  record("drag", 0.5, part);
+  EXPECT_NEAR(part, 1.0, 0.05);
 }
 
 TEST(Sphere, Slow_DragInPowerLawFluids) {
   const std::pair<double, double> cases[]{
       {1.5, 2.4844}, {1.0, 2.1049}, {0.8, 1.9501}, {0.3, 1.5421}};
-  for (const auto& [index, exact] : cases)
-    EXPECT_NEAR(sphere_drag(index, 5.0) / exact, 1.0, 0.05) << "n = " << index;
+  for (const auto& [index, exact] : cases) {
+    const double part = sphere_drag(index, 5.0) / exact;
+    record("drag", index, part);
+    EXPECT_NEAR(part, 1.0, 0.05) << "n = " << index;
+  }
 }
 
 // From rest under the whole force at once, with every operator: thin fluids, n = 0.3, a yield

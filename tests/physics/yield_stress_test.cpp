@@ -147,10 +147,11 @@ double critical_yield_number(int dimension, double diameter, int box,
 TEST(YieldNumber, OfADiscIsThatOfPlasticityTheory) {
   // F = (4 √2 + 2 π) σ_y D on a rough disc [RandolphHoulsby1984]
   const double limit = pi / 4.0 / (4.0 * std::sqrt(2.0) + 2.0 * pi);
-  for (const double diameter : {10.0, 20.0})
-    EXPECT_NEAR(critical_yield_number(2, diameter, 5 * static_cast<int>(diameter)) / limit, 1.0,
-                0.1)
-        << diameter;
+  for (const double diameter : {10.0, 20.0}) {
+    const double number = critical_yield_number(2, diameter, 5 * static_cast<int>(diameter));
+    RecordProperty("number" + std::to_string(static_cast<int>(diameter)), std::to_string(number));
+    EXPECT_NEAR(number / limit, 1.0, 0.1) << diameter;
+  }
 }
 
 // 0.0460 at this Bingham number (tests/reference/sphere_in_gel.py), of which 2 π R² σ_y/F = 0.143

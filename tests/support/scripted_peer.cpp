@@ -10,7 +10,7 @@
 ///   solid insert       an empty box, late insertion, removal, return, then the end
 ///   solid nan          a state that is not finite
 ///   solid silent       agrees and sends nothing
-///   solid slow         answers late, but answers
+///   solid slow         answers late, but answers; its handshake counts 3 particles, and it has one
 ///   solid die          agrees, sends one state and is killed
 ///   solid leave STAGE HOW   leaves at a stage (connected, hello, agreed, states, running, last,
 ///                      goodbye, refused, version) by MPI_Finalize only (finalize), by exit, or
@@ -126,11 +126,11 @@ void spoil(const std::string& script, Setting now, SolidSession& session, State&
 }
 
 /// The hello of a solid for whatever scene the fluid has read: it repeats the fluid's own numbers.
-Hello answer_to(Hello hello) {
+Hello answer_to(Hello hello, std::int64_t particles = 0) {
   hello.role = Role::Solid;
   hello.program = "scripted_peer";
   hello.step = hello.step * hello.fluid_steps / hello.solid_steps;
-  hello.particles = 0;
+  hello.particles = particles;
   hello.radius.reset();
   hello.density.reset();
   return hello;
@@ -144,7 +144,7 @@ Shape disc(std::int64_t id) {
 /// Plays the solid.
 void solid(Channel& channel, const std::string& script) {
   SolidSession session(channel, kTimeout);
-  const Hello hello = answer_to(session.fluid());
+  const Hello hello = answer_to(session.fluid(), script == "slow" ? 3 : script != "insert");
   const Setting agreed{hello.step, hello.box_lo, hello.box_hi};
   session.agree(hello);
   if (script == "silent") pause();

@@ -17,7 +17,7 @@ import numpy as np
 
 from bplbm import pictures  # noqa: F401  (its style)
 from bplbm import shapes
-from bplbm.page.setup import drawn_sides, flat_box, on_paper, stretch
+from bplbm.page.setup import drawn_sides, flat_box, flat_origin, on_paper, stretch
 from bplbm.project import INSTALLED, tool
 from bplbm.reading import read_table
 from bplbm.scene_words import COLOR, drive_text, motion_text, side_line, words
@@ -52,12 +52,14 @@ def discs_of(scene, folder):
     return discs + script_discs(folder, up)
 
 
-def draw_sides(axes, scene, box, unit):
-    lx, ly = box
+def draw_sides(axes, scene, box, origin, unit):
+    def line(side, low, high):
+        return (np.array(ends) + begin for ends, begin in zip(side_line(side, box, low, high), origin))
+
     for key, sides in drawn_sides(scene).items():
         periodic = scene["box"].get(key, "wall") == "periodic"
         for side in map(on_paper, sides):
-            x, y = side_line(side, box, 0, ly if side in ("left", "right") else lx)
+            x, y = line(side, 0, box[1] if side in ("left", "right") else box[0])
             axes.plot(x, y, "--" if periodic else "-", color="0.55" if periodic else "k", linewidth=1 if periodic else 2.5,
                       solid_capstyle="projecting", zorder=3)
     offsets = {"left": (-30, 0, "right"), "right": (6, 0, "left"), "bottom": (0, -32, "center"), "top": (0, 6, "center")}
@@ -65,7 +67,7 @@ def draw_sides(axes, scene, box, unit):
         if len(scene["box"]["size"]) == 3 and b["side"] in ("bottom", "top"):
             continue  # they face the reader
         side, (low, high) = on_paper(b["side"]), stretch(b, scene)
-        x, y = side_line(side, box, low / unit, high / unit)
+        x, y = line(side, low / unit, high / unit)
         axes.plot(x, y, color=COLOR[b["kind"]], linewidth=5, solid_capstyle="butt", zorder=4)
         dx, dy, align = offsets[side]
         axes.annotate(words(b), (np.mean(x), np.mean(y)), xytext=(dx, dy), textcoords="offset points", ha=align,
@@ -105,10 +107,11 @@ def draw_obstacle(axes, o, scene, folder, unit):
         low, high = np.array(o["from"])[flat] / unit, np.array(o["to"])[flat] / unit
         axes.add_patch(plt.Rectangle(low, *(high - low), facecolor="0.6", edgecolor="0.3"))
     if text := motion_text(o, up + 1):
-        low, high = (np.clip(corner[flat] / unit, 0, np.array(flat_box(scene)) / unit) for corner in shapes.extent(o, folder))
+        start, size = np.array(flat_origin(scene)), flat_box(scene)
+        low, high = (np.clip(corner[flat], start, start + size) / unit for corner in shapes.extent(o, folder))
         hollow = o.get("hollow", False)
-        axes.annotate(text, (0.5 * (low[0] + high[0]), high[1] if hollow else 0.5 * (low[1] + high[1])), ha="center",
-                      va="bottom" if hollow else "center", zorder=5, fontsize=8)
+        axes.annotate(text, (0.5 * (low[0] + high[0]), high[1] if hollow else 0.5 * (low[1] + high[1])), xytext=(0, 3 if hollow else 0),
+                      textcoords="offset points", ha="center", va="bottom" if hollow else "center", zorder=5, fontsize=8)
 
 
 def checked(tables):
@@ -122,26 +125,29 @@ def figure_of(scene, folder):
     """A figure of a scene's tables; files that they name lie in the folder."""
     unit = 1e-3 if max(scene["box"]["size"]) < 0.5 else 1.0
     label = "mm" if unit == 1e-3 else "m"
-    box, up = np.array(flat_box(scene)) / unit, "xyz"[len(scene["box"]["size"]) - 1]
+    box, origin = np.array(flat_box(scene)) / unit, np.array(flat_origin(scene)) / unit
+    up = "xyz"[len(scene["box"]["size"]) - 1]
     width = 4.6
     figure, axes = plt.subplots(figsize=(width, np.clip(width * box[1] / box[0], 1.6, 6.5)))
     for o in scene.get("obstacle", []):
         draw_obstacle(axes, o, scene, folder, unit)
     for artist in [*axes.patches, *axes.collections, *axes.images]:
-        artist.set_clip_path(plt.Rectangle((0, 0), *box, transform=axes.transData))
+        artist.set_clip_path(plt.Rectangle(origin, *box, transform=axes.transData))
     discs = [plt.Circle((x / unit, y / unit), d / 2 / unit) for x, y, d in discs_of(scene, folder)]
     axes.add_collection(PatchCollection(discs, facecolor="wheat", edgecolor="0.3", linewidth=0.5, zorder=2))
-    draw_sides(axes, scene, box, unit)
+    draw_sides(axes, scene, box, origin, unit)
     axes.set_aspect("equal")
-    axes.set_xlim(-0.02 * box[0], 1.02 * box[0])
-    axes.set_ylim(-0.02 * box[1], 1.02 * box[1])
+    for limit, low, length in zip((axes.set_xlim, axes.set_ylim), origin, box):
+        limit(low - 0.02 * length, low + 1.02 * length)
     axes.grid(False)
     axes.set_facecolor("#eef4fb")
     for spine in axes.spines.values():
         spine.set_visible(False)
     axes.set_xlabel(f"x [{label}]", labelpad=16 if any(on_paper(b["side"]) == "bottom" for b in scene.get("boundary", [])) else 4)
     axes.set_ylabel(f"{up} [{label}]", labelpad=16 if any(b["side"] == "left" for b in scene.get("boundary", [])) else 4)
-    figure.text(0.5, 1.0, drive_text(scene), ha="center", va="bottom", fontsize=8, transform=figure.transFigure)
+    above = 24 if any(on_paper(b["side"]) == "top" for b in scene.get("boundary", [])) else 10  # points: words of a boundary
+    axes.annotate(drive_text(scene), (0.5, 1.0), xycoords="axes fraction", xytext=(0, above), textcoords="offset points",
+                  ha="center", va="bottom", fontsize=8)
     return figure
 
 

@@ -151,6 +151,17 @@ TEST_F(OddInput, TablesOfAnotherUnitAreWarnedOf) {
   expect_in(once("-3,0\n-2,1\n0,1\n"), "all of it lies before the run, which keeps its last");
   EXPECT_EQ(once("0,0\n9,1\n"), "") << "a part of a longer history";
   EXPECT_EQ(once("0,0\n0.5,1\n1e6,1\n"), "") << "a value that stays";
+  // minutes for seconds; a soft start is none
+  const std::string minutes = "ends at 0.015 s, after 1.5 % of the run, and from then on has its ";
+  const auto short_one = [&](const std::string& content) {
+    Scene s = read_scene({scene(table("time,factor\n" + content, "table = \"in.csv\""))});
+    s.numerics.time_step = 1e-3;
+    return fmt::format("{}", fmt::join(make_plan(s).warnings, "\n"));
+  };
+  expect_in(short_one("0,0\n0.005,1\n0.010,1\n0.015,0\n0.016,0\n"), minutes + "last factor, 0");
+  expect_in(short_one("0,1\n0.015,0\n"), "are they in minutes or hours?");
+  EXPECT_EQ(short_one("0,0\n0.015,1\n0.016,1\n"), "") << "a soft start";
+  EXPECT_EQ(short_one("0,0\n0.02,1\n0.025,0\n"), "") << "a pulse";
   expect_in(warnings(table("time,factor\n0,1\n2e6,0\n4e6,1\n", periodic)),
             "it ends after 2.5e-07 of the period; its times are in seconds, are they in µs?");
   Scene quick =

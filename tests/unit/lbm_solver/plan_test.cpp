@@ -64,7 +64,11 @@ TEST(Plan, AdvisesByWhatBindsTheStep) {
   refused(s, "or a smaller fluid.velocity_scale");
   s.fluid.viscosity = 1e-3;  // τ binds
   refused(s, "is the viscosity in m²/s?");
-  s.numerics.time_step = 1e-4;
+  s.numerics.time_step = 1e-4;  // where τ = 19
+  refused(s, "is the viscosity in m²/s?");
+  s.fluid.viscosity = 1e-7;
+  s.fluid.velocity_scale = 1e-6;
+  s.numerics.time_step = 1e-3;
   refused(s, "or a longer numerics.time_step");
 }
 

@@ -175,20 +175,6 @@ TEST(ViscosityOfAScene, ABinghamFluidComesDownToItsPlasticViscosity) {
   EXPECT_FALSE(warns(make_plan(scene_with(folder, paste + "1}")), "thicker than its law"));
 }
 
-// By what it costs: 2e4 steps are nothing, whatever the Bingham number; 4e7 of 800 cells take 5
-// min, ten times as many are warned of.
-TEST(ViscosityOfAScene, WarnsOfAYieldStressThatCosts) {
-  const test::TemporaryFolder folder;
-  const auto mud = [&](const std::string& yield, const std::string& rest = "}") {
-    return make_plan(scene_with(
-        folder,
-        "viscosity = {model = \"bingham\", consistency = 1.0, yield_stress = " + yield + rest));
-  };
-  EXPECT_FALSE(warns(mud("1e5"), "on a core"));
-  EXPECT_TRUE(warns(mud("1e6"), "times as many as without it, some ")) << "its steps";
-  EXPECT_FALSE(warns(mud("1e6", ", shear_rate = 4e4}"), "on a core")) << "where it flows";
-}
-
 // By an independent sum over the stress: below the crossing the fluid is sheared with σ/nu_max.
 TEST(ViscosityOfAScene, KnowsWhatCreepAddsToAChannel) {
   for (const double n : {1.0, 0.5}) {

@@ -154,6 +154,36 @@ class Images(unittest.TestCase):
                                    patch.get_clip_path().get_fully_transformed_path().get_extents().extents,
                                    figure.axes[0].transData.transform([[0, 0], [20, 10]]).ravel())
 
+    def test_a_box_may_begin_anywhere(self):
+        """Drawings of one scene in two boxes, the second and all in it moved: they are equal, the axes' numbers apart."""
+        def drawn(x, y, dimension):
+            middle = [0.0] * (dimension - 2)
+            tables = {"box": {"origin": [x, *middle, y], "size": [1.0] * dimension},
+                      "fluid": {"density": 1000.0, "kinematic_viscosity": 1e-6},
+                      "boundary": [{"side": "left", "kind": "pressure",
+                                    **{key: [0.0, y + part] if middle else y + part for key, part in (("from", 0.25), ("to", 0.75))}}],
+                      "obstacle": [{"from": [x + 0.25, *middle, y + 0.5], "to": [x + 0.5, *middle, y + 0.75], "motion": "linear",
+                                    "velocity": [0.5, *middle, 0.0]},
+                                   {"centre": [x + 0.75, *middle, y + 0.75], "diameter": 0.25}],
+                      "particles": {"diameter": 0.125, "density": 2500.0, "start": [[x + 0.5, *middle, y + 0.25]]}}
+            figure = figure_of(tables, pathlib.Path("none"))
+            axes = figure.axes[0]
+            figure.canvas.draw()
+            places = [artist.get_window_extent().extents for artist in [*axes.patches, *axes.lines, *axes.collections]]
+            places += [axes.transData.transform(text.xy) for text in axes.texts]
+            drawing = Drawing(tables)
+            drawing.obstacles("")
+            drawing.boundaries()
+            return np.concatenate(places), axes.get_xlim(), axes.get_ylim(), drawing.svg()
+
+        for dimension in (2, 3):
+            places, x_limits, y_limits, page = drawn(0.0, 0.0, dimension)
+            moved, moved_x, moved_y, moved_page = drawn(-4.0, 8.0, dimension)
+            self.assertGreater(len(places), 30)
+            np.testing.assert_allclose(moved, places, atol=1e-6)
+            np.testing.assert_allclose([*moved_x, *moved_y], np.add([*x_limits, *y_limits], [-4, -4, 8, 8]))
+            self.assertEqual(moved_page, page)
+
     def test_the_discs_of_a_clump_have_no_lines_inside(self):
         import matplotlib.pyplot as plt
         from bplbm.pictures import draw_discs

@@ -39,11 +39,18 @@ def of_particles(table, run):
     return of_each(table, ids) if len(ids) <= FEW else of_all(table)
 
 
+def particle_name(number):
+    """As messages call it: numbers below -1 are clumps'."""
+    family, count = divmod(-2 - int(number), 1 << 32) if number < -1 else (0, None)
+    name = f"particle {number:.0f}" if count is None else f"clump {count + 1}"
+    return f"{name} of the {family}. fix rigid" if family else name
+
+
 def of_each(table, ids):
     """A curve a particle."""
     up = upward(table)
     mine = {i: table.where(table["id"] == i) for i in ids}
-    name = lambda i: f"particle {i:.0f}" if len(ids) > 1 else ""  # noqa: E731
+    name = lambda i: particle_name(i) if len(ids) > 1 else ""  # noqa: E731
 
     def chart(column, label):
         return line_chart([Line(name(i), t["time"], t[column]) for i, t in mine.items()], "time [s]", label)

@@ -25,6 +25,12 @@ def flat_box(tables):
     return [size[0], size[-1]]
 
 
+def flat_origin(tables):
+    """Lower left corner of the drawing [m]: x and y of the box's origin, in three dimensions x and z."""
+    origin = tables["box"].get("origin", [0.0] * dimensions(tables))
+    return [origin[0], origin[-1]]
+
+
 def drawn_sides(tables):
     """Key of the box and names of the two sides of each axis that is drawn."""
     return {"sides_x": ("left", "right"),
@@ -37,15 +43,15 @@ def on_paper(side):
 
 
 def stretch(boundary, tables):
-    """Where along its side of the drawing a boundary condition begins and ends [m]."""
-    box = flat_box(tables)
+    """Where a boundary condition begins and ends [m], from the beginning of its side of the drawing on."""
     vertical = boundary["side"] in ("left", "right")
-    low, high = boundary.get("from", 0.0), boundary.get("to", box[1] if vertical else box[0])
+    length, begin = (corner[1 if vertical else 0] for corner in (flat_box(tables), flat_origin(tables)))
+    low, high = boundary.get("from", begin), boundary.get("to", begin + length)
     if isinstance(low, list):  # along the side's two axes: y, z of left and right; x, y of back and front
         low = low[1 if vertical else 0]
     if isinstance(high, list):
         high = high[1 if vertical else 0]
-    return low, high
+    return low - begin, high - begin
 
 
 class Drawing:
@@ -56,8 +62,7 @@ class Drawing:
         self.scale = WIDTH / max(self.box[0], 0.75 * self.box[1])
         self.width, self.height = (side * self.scale for side in self.box)
         self.parts = []
-        origin = tables["box"].get("origin", [0.0] * dimensions(tables))
-        self.origin = origin[0], origin[-1]
+        self.origin = flat_origin(tables)
 
     def at(self, x, y):
         return ROOM + x * self.scale, ROOM + (self.box[1] - y) * self.scale
