@@ -276,12 +276,6 @@ class Failed(Output):
                          "Set-up", "Flow until then", "Histories until then", "force of the fluid in", "&lt;too fast&gt;", "tools/run sand"):
                 self.assertIn(part, text, dimensions)
 
-    def test_a_run_of_which_only_the_start_was_written_says_so(self):
-        self.write(2, frames=1)
-        text = self.failed_page()
-        self.assertIn("Only the state at the start was written", text)
-        self.assertNotIn("flow-slide", text)
-
     def test_a_signal_is_said(self):
         self.write(2)
         (self.out / "error.log").write_text("Primary job  terminated normally, but 1 process returned\n-----\n")
