@@ -2,6 +2,7 @@
 
 import importlib
 import os
+import subprocess
 import sys
 
 from bplbm.options import scene_files
@@ -19,7 +20,7 @@ MODULES = {
     "report": ("bplbm.report.command", "speed against error of every choice, and the stability of hard cases"),
 }
 OWN = {"check": "looks at a scene without running it: grid, steps, numbers, what is on, the time to expect",
-       "keys": "every key of a scene with type, unit, default, range and meaning",
+       "keys": "every key of a scene with type, unit, default, range and meaning; with a part of a name those that hold it",
        "where": "prints the folders of the programs, the scenes and the documents; of one of them with its name"}
 OF_CHECK = ("--liggghts-vars",)  # options of lbm check, handed on
 PROGRAMS = {"trace": "looks at, compares, cuts and draws recorded exchanges", "replay": "plays a recorded exchange to a program"}
@@ -73,6 +74,23 @@ def check(words):
     os.execv(fluid_program(), [str(fluid_program()), "check", *(word for word in words if word in OF_CHECK), *scene_files(args)])
 
 
+def keys(words):
+    """Prints the table of all keys, or of those with a part of a name in them."""
+    if words and words[0] in ("-h", "--help"):
+        print(f"usage: bplbm keys [PART]\n{OWN['keys']}")
+        return 0
+    if words[1:]:
+        return mistake("keys: one part of a name, as viscosity, or nothing for all")
+    if not words:
+        os.execv(fluid_program(), ["lbm", "--keys"])
+    said = subprocess.run([fluid_program(), "--keys"], capture_output=True, text=True, timeout=20, check=True).stdout.splitlines()
+    found = [line for line in said[2:] if words[0] in line.split("|")[1]]
+    if not found:
+        return mistake(f"no key of a scene has '{words[0]}' in it; bplbm keys prints all")
+    print("\n".join([*said[:2], *found]))
+    return 0
+
+
 def where(words):
     """Prints all places, or the path alone of the one that is named."""
     places = {"programs": BIN, "scenes": CASES, "common": CASES / "common", "python": ROOT / "tools", "documents": ROOT}
@@ -105,7 +123,7 @@ def main():
     if name == "where":
         return where(words)
     if name == "keys":
-        os.execv(fluid_program(), ["lbm", "--keys"])
+        return keys(words)
     if name not in MODULES:
         return mistake(f"there is no command '{name}'; there are: {', '.join([*MODULES, *OWN, *PROGRAMS])}")
     sys.argv = [f"bplbm {name}", *words]

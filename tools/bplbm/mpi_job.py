@@ -9,6 +9,8 @@ import signal
 import subprocess
 import threading
 
+from bplbm.told_once import REPEATED, ToldOnce
+
 MOST_LINES = 400  # of what a job says on its error output that are kept
 STOPPED = 1  # a job that was told to end: its programs leave with this code
 
@@ -43,8 +45,9 @@ def fluid_ranks(mpirun):
 
 
 def reason_of(text):
-    """The last error that a program told, without its name; else the last line."""
-    errors = re.findall(r"^\w+ \| error \| (.*)$", text, re.M)
+    """The last error that a program told, without its name, in one line; else the last line."""
+    found = re.findall(r"^\w+ \| error \| (.*(?:\n  - .*)*)$", text, re.M)
+    errors = [re.sub(r"\n  - ", "; ", e).replace(":;", ":", 1) for e in found if not REPEATED.search(e)]
     ours = [e for e in errors if not e.startswith("the fluid program stopped")]
     lines = [line for line in text.splitlines() if line.strip()]
     return (ours or errors or lines or ["nothing was said"])[-1]
@@ -61,10 +64,13 @@ class MpiJob:
         self.said = collections.deque(maxlen=MOST_LINES)  # on its error output, line by line
 
     def listen(self, pipe):
-        """Passes the job's error output on, and keeps its last lines."""
+        """Passes the job's error output on, once each, and keeps its last lines."""
+        screen = ToldOnce(lambda text: os.write(2, text.encode()))
         for line in pipe:
-            os.write(2, line)
-            self.said.append(line.decode(errors="replace"))
+            text = line.decode(errors="replace")
+            self.said.append(text)
+            screen.line(text)
+        screen.end()
 
     def run(self):
         before = {s: signal.signal(s, self.stop) for s in (signal.SIGINT, signal.SIGTERM)}

@@ -221,8 +221,8 @@ class Sweep:
         return out
 
     def label(self, chosen):
-        """A folder's name for a run: the last part of each key with its value."""
-        short = {name: re.findall(r"\w+", name)[-1] for name in chosen}
+        """A folder's name for a run: the last part of each key, with the number of an entry, and its value."""
+        short = {name: re.search(r"\w+(\[\d+\])*$", name)[0].replace("[", "_").replace("]", "") for name in chosen}
         ambiguous = [word for word in short.values() if list(short.values()).count(word) > 1]
         words = []
         for name, value in chosen.items():

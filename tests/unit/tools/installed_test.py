@@ -95,6 +95,9 @@ class Installed(unittest.TestCase):
 
     def test_keys_variables_and_places_are_printed(self):
         self.assertIn("| `numerics.cell` |", self.succeeds("keys"))
+        part = self.succeeds("keys", "viscosity.m")
+        self.assertIn("| `fluid.viscosity.model` |", part)
+        self.assertNotIn("numerics.cell", part)
         self.succeeds("new", "sand")
         self.assertIn("-var solid_step", self.succeeds("check", "sand", "--liggghts-vars"))
         for file in ("sand/scene.toml", "sand/in.liggghts", "sand/README.md"):  # what they name is there

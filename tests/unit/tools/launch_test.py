@@ -15,7 +15,7 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from bplbm import command, mpi_job, output_folder, placement, result, run, solid_alone  # noqa: E402
+from bplbm import command, mpi_job, output_folder, placement, result, run, solid_alone, told_once  # noqa: E402
 from bplbm.options import arguments, scene_files  # noqa: E402
 from bplbm.scenes import Scene, find, scenes  # noqa: E402
 
@@ -30,6 +30,37 @@ class Result(unittest.TestCase):
         r = result("a", 0.5, "m/s", 0.0, "here", 0.1, scale=10.0)
         self.assertAlmostEqual(r["error"], 0.05)
         self.assertTrue(r["pass"])
+
+
+class ToldOnce(unittest.TestCase):
+    RULE = 74 * "-" + "\n"
+    ABORT = RULE + "MPI_ABORT was invoked on rank 0\nwith errorcode 2.\n" + RULE
+
+    def shown(self, text):
+        seen = []
+        screen = told_once.ToldOnce(seen.append)
+        for line in text.splitlines(keepends=True):
+            screen.line(line)
+        screen.end()
+        return "".join(seen)
+
+    def test_an_error_of_both_programs_is_seen_once_and_mpirun_adds_nothing(self):
+        fault = "lbm | error | too fast\n"
+        self.assertEqual(self.shown(fault + "liggghts | error | the fluid program stopped: too fast\n" + self.ABORT),
+                         fault + "liggghts | error | the fluid program stopped as lbm says\n")
+        refusal = "they disagree:\n  - step\n  - box\n"
+        self.assertEqual(self.shown(f"liggghts | error | {refusal}lbm | error | {refusal}run | logs\n  - other\n"),
+                         f"liggghts | error | {refusal}lbm | error | as liggghts says\nrun | logs\n  - other\n")
+
+    def test_nothing_else_is_kept_back(self):
+        for text in (self.ABORT, "lbm | error | a\n" + self.RULE + "no slots\n" + self.RULE, self.RULE, "lbm | error | a\n" + self.RULE + "b\n",
+                     self.RULE + 40 * "a table\n", "lbm | error | a\nlbm | error | a\n", "lbm | error | a\nliggghts | error | b\n  - c\n"):
+            self.assertEqual(self.shown(text), text)
+
+    def test_the_reason_is_what_was_said_first_with_its_list(self):
+        text = "liggghts | error | they disagree:\n  - step\n  - box\nlbm | error | as liggghts says\nrun | stopped\n"
+        self.assertEqual(mpi_job.reason_of(text), "they disagree: step; box")
+        self.assertEqual(mpi_job.reason_of("liggghts | error | lost\nlbm | error | the solid program stopped as liggghts says\n"), "lost")
 
 
 class Launch(unittest.TestCase):

@@ -12,7 +12,10 @@ import h5py
 import numpy as np
 from bplbm import early_end, written
 from bplbm.page import run as page_of_run, sensors
+from bplbm.page.failed import write_failed_page
+from bplbm.page.setup import LEGIBLE
 from bplbm.results import Run
+from bplbm.scene_words import COLOR
 
 
 class Sensors(page_test.Output):
@@ -94,6 +97,22 @@ class Written(unittest.TestCase):
         self.assertEqual([written.share_text(s) for s in (0.814, 0.006, 0.005)], ["81 %", "1 %", "<1 %"])
         self.assertEqual([written.unit_text(u) for u in ("m3/s", "kg/m3", "m/s2", "N m", "1")], ["m³/s", "kg/m³", "m/s²", "N m", "1"])
         self.assertEqual((written.with_unit(17.345, "1"), written.with_unit(2, "N")), ("17.345", "2 N"))
+
+
+class Parts(page_test.Output):
+    def test_the_colours_of_a_set_up_are_read_on_a_dark_page_too(self):
+        self.assertLessEqual(set(COLOR.values()), set(LEGIBLE))
+        for color in LEGIBLE.values():
+            red, green, blue = (int(color[k:k + 2], 16) / 255 for k in (1, 3, 5))
+            self.assertTrue(0.2 < 0.3 * red + 0.6 * green + 0.1 * blue < 0.6, color)
+        self.write(2)
+        self.assertIn(f'stroke="{LEGIBLE["tab:blue"]}"', self.page())
+
+    def test_a_run_of_which_only_the_start_was_written_says_so(self):
+        self.write(2, frames=1)
+        text = write_failed_page(self.out, self.scene, [self.scene.file], ["sand"], ["mpirun"], 3).read_text()
+        self.assertIn("Only the state at the start was written", text)
+        self.assertNotIn("flow-slide", text)
 
 
 class Repeat(page_test.Output):

@@ -6,6 +6,7 @@ import io
 import json
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -227,6 +228,8 @@ class Page(Output):
         self.write(2, frames=100)
         text = self.page()
         self.assertLess(len(text), 1_000_000)
+        code = "import bplbm.page.run, sys; sys.exit('matplotlib' in sys.modules)"  # it would take as long as all else
+        self.assertEqual(subprocess.run([sys.executable, "-c", code], cwd=ROOT / "tools", timeout=60, check=False).returncode, 0)
         self.assertEqual(text.count('"speed": "data:'), picture.MOST_FRAMES)
 
     def test_a_run_without_one_is_complete_all_the_same(self):

@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "tools"))
 import numpy as np  # noqa: E402
 from bplbm import sweep  # noqa: E402
 from bplbm.page import chart  # noqa: E402
-from bplbm.page.sweep import charts, curves  # noqa: E402
+from bplbm.page.sweep import charts, curves, status  # noqa: E402
 from bplbm.sweep_values import Mistake, Sweep, axis, evaluate, Names  # noqa: E402
 from bplbm.toml_text import laid_over, toml  # noqa: E402
 
@@ -44,6 +44,7 @@ class Values(unittest.TestCase):
 
     def test_keys_of_one_name_are_told_apart(self):
         self.assertEqual(planned(["fluid.density=1", "particles.density=2"])[0][0], "fluid.density-1_particles.density-2")
+        self.assertEqual(planned(["fluid.gravity[1]=-1", "boundary[0].pressure=7"])[0][0], "gravity_1--1_pressure-7")
 
     def test_an_entry_of_a_list_keeps_the_others(self):
         overlay = planned(["boundary[0].pressure=7"])[0][1]
@@ -221,6 +222,12 @@ class Command(unittest.TestCase):
         self.assertIn('<a href="logs/density-15.log" class=note>out of tolerance</a>', page)
         self.assertIn("references of the scene", page)
         self.assertNotIn("<h2>Reasons</h2>", self.page_of("fluid.density=14,16", "other"))
+
+    def test_a_run_cut_short_is_called_so_and_vectors_have_brackets(self):
+        self.main("--set", "fluid.gravity=[0,-1],[0,-2]", "--until", "0.5")
+        self.assertEqual([(row["status"], row["fluid.gravity [m/s²]"]) for row in self.rows()], [("ok", "0 -1"), ("ok", "0 -2")])
+        self.assertIn("<td>(0, -2)</td>", (self.out / "index.html").read_text())
+        self.assertEqual(status({"code": 0, "reason": "not judged: ended at 1 of 2 s"}), ("not judged", "note"))
 
     def page_of(self, values, folder):
         self.main("--set", values, "--out", str(self.folder / folder))

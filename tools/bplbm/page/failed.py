@@ -74,7 +74,9 @@ def write_failed_page(folder, scene, files, words, line, code):
     log = folder / "error.log"
     text = log.read_text(errors="replace") if log.is_file() else ""
     planes = attempt(flow.read_planes, run) or []
-    moving = attempt(flow.animation, run, planes)
+    moving = attempt(flow.animation, run, planes) if any(plane.fluid[1] for plane in planes) else ""
+    if planes and not moving:
+        moving = '<p class="soft">Only the state at the start was written; a smaller output.fields_every shows more.</p>'
     title = f"{scene.name}: failed"
     shown = page(title, f"<h1>{html.escape(title)}</h1>",
                  f'<p><span class="bad">exit code {code}</span> ({html.escape(ENDED.get(code, "bad input"))}) '
@@ -87,7 +89,7 @@ def write_failed_page(folder, scene, files, words, line, code):
                  section("Sensors until then", row(attempt(sensors.charts, run))),
                  section("What was on", said(run)), section("Warnings and hints", warnings(run)),
                  section("How to repeat it", *how(run, tables, scene, words, line)),
-                 scripts=["flow.js"] if moving else [])
+                 scripts=["flow.js"] if 'id="flow"' in moving else [])
     path = folder / "index.html"
     part = path.with_suffix(".part")
     part.write_text(shown)

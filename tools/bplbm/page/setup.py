@@ -4,13 +4,14 @@ import base64
 import html
 import io
 
-import matplotlib.image
 import numpy as np
 
 from bplbm import shapes
 from bplbm.reading import read_table
 from bplbm.scene_words import COLOR, drive_text, motion_text, side_line, words
 
+# Colours of matplotlib by name, light enough for a dark page and dark enough for a white one.
+LEGIBLE = {"tab:blue": "#2f86c8", "tab:green": "#2ca02c", "tab:orange": "#e8760c", "tab:purple": "#9a70c4", "tab:gray": "#7f7f7f"}
 MOST_DISCS = 4000
 MOST_TRIANGLES = 6000
 WIDTH, ROOM = 360, 46  # of the drawing; beside it for words
@@ -89,7 +90,7 @@ class Drawing:
             if b["side"] in ("bottom", "top") and dimensions(self.tables) == 3:
                 continue  # they face the reader
             side, (low, high) = on_paper(b["side"]), stretch(b, self.tables)
-            color = COLOR.get(b["kind"], "tab:gray").removeprefix("tab:")
+            color = LEGIBLE[COLOR.get(b["kind"], "tab:gray")]
             xs, ys = side_line(side, self.box, low, high)
             self.line(xs, ys, f'stroke="{color}" stroke-width="6"')
             x, y = self.at(sum(xs) / 2, sum(ys) / 2)
@@ -104,6 +105,7 @@ class Drawing:
         seen = parts if parts.ndim == 2 else parts.max(axis=1)
         pixels = np.zeros((*seen.shape, 4))
         pixels[..., :3], pixels[..., 3] = 0.6, seen[::-1]
+        import matplotlib.image  # half of what a page takes, and few scenes have images
         out = io.BytesIO()
         matplotlib.image.imsave(out, pixels, format="png")
         (left, top), (right, bottom) = self.place((x0, z1)), self.place((x1, z0))

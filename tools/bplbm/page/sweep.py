@@ -12,6 +12,7 @@ from bplbm.project import repeated
 COSTS = ("physical time [s]", "largest Ma", "mass drift", "wall time [s]")
 OUT_OF_TOLERANCE = 4
 STATUS = {0: ("ok", "good"), OUT_OF_TOLERANCE: ("out of tolerance", "note")}
+NOT_JUDGED = "not judged"  # as the reason of such a run begins
 OF_REFERENCES = "Out of tolerance: against the references of the scene, which hold for its own values and need not hold for others."
 MOST_LINES = 8  # of one chart
 
@@ -23,6 +24,9 @@ def columns_of(rows):
 
 
 def status(row):
+    """What a run is called, and the class of its colour."""
+    if row["code"] == 0 and row["reason"].startswith(NOT_JUDGED):
+        return NOT_JUDGED, "note"
     return STATUS.get(row["code"], ("failed", "bad"))
 
 
@@ -43,6 +47,11 @@ def write_table(folder, varied, rows):
     return path
 
 
+def shown(value):
+    """A value as the page has it: vectors in brackets."""
+    return f"({', '.join(map(str, value))})" if isinstance(value, list) else value
+
+
 def is_number(value):
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
@@ -56,7 +65,7 @@ def abscissa(names, rows):
 def told(name, value, column):
     """A value of a legend: the last part of its key, and its unit from the name of its column, as `key [unit]`."""
     unit = column.partition(" [")[2].rstrip("]")
-    return f"{name.split('.')[-1]} {plain(value)}{' ' + unit if unit else ''}"
+    return f"{name.split('.')[-1]} {shown(value)}{' ' + unit if unit else ''}"
 
 
 def curves(names, varied, rows, column, along):
@@ -100,7 +109,7 @@ def write_page(folder, scene, variant, names, varied, rows, words):
     lines = []
     for name, row in rows.items():
         said, color = status(row)
-        lines.append([*(plain(row["all"][n]) for n in varied), Cell(link(folder, name, said, color), said),
+        lines.append([*(shown(row["all"][n]) for n in varied), Cell(link(folder, name, said, color), said),
                       *(row["results"].get(c) for c in columns), Cell(link(folder, name), name)])
     failed = sum(status(row)[1] == "bad" for row in rows.values())
     heading = f"{scene.name}{' ' + variant if variant else ''}: a sweep of {', '.join(names)}"
