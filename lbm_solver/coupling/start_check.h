@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 
 #include "lbm_solver/coupling/particles.h"
@@ -22,5 +23,11 @@ using DeepStarts = std::map<std::int64_t, std::string>;
 ///                     direction
 DeepStarts warn_of_starts(const Scene& scene, const Plan& plan, const Fluid& fluid,
                           const Particles& particles, Log& log);
+
+/// What to say of particles whose centres lie in a mesh that moves, and has gone over them; empty
+/// where there is none.
+/// @param starts  of those that began in a solid: they are known
+std::string buried_text(const Scene& scene, std::span<const protocol::Particle> particles,
+                        double time, const DeepStarts& starts);
 
 }  // namespace lbm
