@@ -40,6 +40,7 @@ struct ImageScene {
 /// A solid that stays where it is, or moves as it is told: a disc or sphere (curved, it may spin),
 /// a block of whole cells, a mesh or an image. A block that moves is the mesh of a box.
 struct ObstacleScene {
+  std::string where;    ///< its table stands: file and line
   bool round = false;   ///< a disc, in three dimensions a sphere
   bool hollow = false;  ///< round, and solid outside
   bool grain = false;   ///< one of a file of many: its load is not listed by itself

@@ -11,6 +11,7 @@
 #include "lbm_solver/coupling/solid_overlap.h"
 #include "lbm_solver/solver/driven_speed.h"
 #include "protocol/wire/clumps.h"
+#include "protocol/wire/names.h"
 
 namespace lbm {
 namespace {
@@ -161,18 +162,18 @@ std::string diagnosis(const Scene& s, const Plan& plan, double time, const std::
         unstable ? ", which is an instability or a blow" : "");
   const bool beside = near.particle && near.distance < kNear * near.particle->shape.radius;
   if (near.particle && at)
-    text += fmt::format(" The nearest particle is {}, {:.3g} radii from there, at {:.3g} m/s.",
-                        near.particle->state.id,
+    text += fmt::format(" The nearest is {}, {:.3g} radii from there, at {:.3g} m/s.",
+                        name_of(near.particle->shape),
                         std::max(0.0, near.distance / near.particle->shape.radius),
                         speed_of(*near.particle));
   else if (near.particle)
-    text += fmt::format(" It is particle {}.", near.particle->state.id);
+    text += fmt::format(" It is {}.", name_of(near.particle->shape));
   const std::vector<Drive> driven = drives(s);
   const auto in = beside ? deep_in(s, *near.particle, time) : std::vector<SolidOverlap>();
   if (!in.empty() && in[0].depth > near.overlap * near.particle->shape.radius) {
     text += overlap_text(in, near.particle->shape.radius, cure);
   } else if (near.partner && near.overlap > kDeepOverlap && beside) {
-    text += fmt::format(" It overlaps particle {} by {:.3g} of a radius.", near.partner->state.id,
+    text += fmt::format(" It overlaps {} by {:.3g} of a radius.", name_of(near.partner->shape),
                         near.overlap);
     cure =
         "their contact throws them apart: start particles apart, or relax the packing before "

@@ -187,8 +187,17 @@ void Observers::load(const Record& record) {
 void Observers::write_particles(double time, const Particles& particles) {
   Particles::Everything all = shown(particles);
   if (probes_ && !chosen_seen_) warn_of_absent(all.particles);
+  if (probes_ && !buried_told_) warn_of_buried(time, all.particles);
   keep_chosen(scene_.output.probe_particles, all);
   if (probes_) probes_->write(time, all.particles, all.loads);
+}
+
+/// Once: particles in what moves.
+void Observers::warn_of_buried(double time, std::span<const protocol::Particle> particles) {
+  const std::string text = buried_text(scene_, particles, time, deep_starts_);
+  if (text.empty()) return;
+  buried_told_ = true;
+  log_.say(std::llround(time / plan_.interval()), "warning", "{}", text);
 }
 
 /// Once: chosen particles that are not there when the first rows are written.

@@ -91,6 +91,7 @@ class Observers {
   void add_bonds(const std::vector<protocol::Particle>& particles,
                  const std::vector<protocol::Bond>& bonds, FieldFrame& frame) const;
   void write_fields(double time, Fluid& fluid, const Particles* particles);
+  void warn_of_buried(double time, std::span<const protocol::Particle> particles);
   void warn_of_absent(std::span<const protocol::Particle> particles);
   void write_points(double time, Fluid& fluid);
   void write_particles(double time, const Particles& particles);
@@ -122,6 +123,7 @@ class Observers {
   bool chosen_seen_ = false;                   // the chosen particles have been looked for
   SpeedRecord speeds_;
   DeepStarts deep_starts_;
+  bool buried_told_ = false;                            // particles in what moves
   bool warned_ = false;                                 // of a speed above kWarnSpeed
   std::optional<ViscosityUse> viscosity_;               // at the end, where it varies
   double mass_excess_ = 0.0, first_mass_excess_ = 0.0;  // what came through patches left out

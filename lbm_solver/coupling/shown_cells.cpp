@@ -114,6 +114,18 @@ void add_images(const std::vector<Geometry>& images, const Fluid& fluid, CellFie
   };
 }
 
+namespace {
+
+/// Of what is fluid in a cell.
+Vec3 fluid_momentum(const Fluid& fluid, int x, int y, int z) {
+  const double open = 1.0 - std::min(1.0, fluid.solid_fraction(x, y, z));
+  if (open <= 0.0) return {};
+  const Fluid::Cell cell = fluid.cell(x, y, z);
+  return open * cell.rho * cell.u;
+}
+
+}  // namespace
+
 Vec3 mean_arrived_momentum(const Fluid& fluid) {
   constexpr double kGrain = 0x1p-44;  // of the whole numbers
   constexpr double kMost = 8.0;       // a run stops long before
@@ -124,7 +136,8 @@ Vec3 mean_arrived_momentum(const Fluid& fluid) {
     for (int y = 0; y < n[1]; ++y) {
       std::array<std::int64_t, 3> row{};
       for (int x = 0; x < n[0]; ++x) {
-        const Vec3 arrived = fluid.arrived_momentum(x, y, z);
+        const Vec3 arrived =
+            fluid.steps() > 0 ? fluid.arrived_momentum(x, y, z) : fluid_momentum(fluid, x, y, z);
         for (int k = 0; k < 3; ++k)
           if (std::abs(arrived[k]) < kMost)
             row[k] += std::llround(static_cast<float>(arrived[k]) / kGrain);

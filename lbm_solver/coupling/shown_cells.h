@@ -22,7 +22,9 @@ std::vector<Geometry> image_solids(const Scene& scene, const Plan& plan);
 /// obstacles.
 void add_images(const std::vector<Geometry>& images, const Fluid& fluid, CellFields& shown);
 
-/// Mean over the box of the momentum that has arrived in its cells. It is added up in whole
+/// Mean over the box of the momentum that has arrived in its cells; before the first step that of
+/// the initial velocity of the fluid, as nothing has arrived (what is there lacks half of a body
+/// force). It is added up in whole
 /// numbers: the same bit for bit on any ranks. Collective.
 Vec3 mean_arrived_momentum(const Fluid& fluid);
 

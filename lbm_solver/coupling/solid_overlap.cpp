@@ -86,7 +86,7 @@ std::vector<SolidOverlap> solid_overlaps(const Scene& s, const Vec3& centre, dou
                      o.mesh ? fmt::format(" (mesh {})",
                                           std::filesystem::path(o.mesh->file).filename().string())
                             : ""),
-           depth, o.motion && !o.motion->surface_only,
+           depth, o.motion && !o.motion->surface_only, !o.round && depth > r,
            o.mesh && std::abs(depth - r) <= kOnSurface * r});
   }
   for (int k = 0; k < s.box.dimension; ++k) {

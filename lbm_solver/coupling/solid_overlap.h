@@ -13,6 +13,7 @@ struct SolidOverlap {
   std::string what;    ///< as a message says it: the 2. obstacle (a mesh), the wall "left"
   double depth = 0.0;  ///< of its surface [m]; beyond its radius: its centre lies inside
   bool moves = false;
+  bool keeps = false;       ///< the centre lies inside, from where a surface pushes no way out
   bool on_surface = false;  ///< the centre lies in the surface of a mesh, to round-off
 };
 

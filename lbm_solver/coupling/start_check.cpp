@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "lbm_solver/coupling/start_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -8,6 +9,7 @@
 #include "lbm_solver/coupling/solid_overlap.h"
 #include "lbm_solver/solver/place_check.h"
 #include "protocol/wire/clumps.h"
+#include "protocol/wire/names.h"
 
 namespace lbm {
 namespace {
@@ -66,41 +68,49 @@ std::set<std::int64_t> hulls(const Fluid& fluid, const Particles& particles) {
 
 DeepStarts warn_of_starts(const Scene& s, const Plan& plan, const Fluid& fluid,
                           const Particles& particles, Log& log) {
-  std::vector<double> lines;  // number, place and radius of those that may
+  constexpr std::size_t kWidth = 6;
+  std::vector<double> lines;  // number, place, radius and carrier of those that may
   for (const protocol::Particle& p : particles.states()) {
     const Vec3 x = place_of(s, p);
     if (p.shape.radius > 0.0 && may_lie_in_solid(s, plan, fluid, x, p.shape.radius))
-      lines.insert(lines.end(),
-                   {static_cast<double>(p.state.id), x[0], x[1], x[2], p.shape.radius});
+      lines.insert(lines.end(), {static_cast<double>(p.state.id), x[0], x[1], x[2], p.shape.radius,
+                                 static_cast<double>(protocol::carrier_of(p.shape))});
   }
   lines = fluid.ranks().collect(lines);
   const std::set<std::int64_t> clumps = hulls(fluid, particles);
   DeepStarts found;
+  std::map<std::int64_t, std::string> said;
   std::string in_surface;  // of which and what
-  for (std::size_t i = 0; i + 4 < lines.size(); i += 5) {
+  for (std::size_t i = 0; i + kWidth <= lines.size(); i += kWidth) {
     const double r = lines[i + 4];
     const Vec3 x(lines[i + 1], lines[i + 2], lines[i + 3]);
-    if (clumps.contains(static_cast<std::int64_t>(lines[i]))) continue;
+    const protocol::Shape shape{.id = static_cast<std::int64_t>(lines[i]),
+                                .carrier = static_cast<std::int64_t>(lines[i + 5])};
+    if (clumps.contains(shape.id)) continue;
     const auto in = solid_overlaps(s, x, r, 0.0);
     if (in.empty() || in[0].depth < kDeepStart * r) continue;
-    found.emplace(static_cast<std::int64_t>(lines[i]),
-                  fmt::format("{:.3g} of its radius deep in {}", in[0].depth / r, in[0].what));
+    const std::string deep =
+        fmt::format("{:.3g} of its radius deep in {}", in[0].depth / r, in[0].what);
+    found.emplace(shape.id, deep);
+    said.emplace(shape.id,
+                 fmt::format("{} begins {}: {}; start it outside, or leave out the wall that its "
+                             "script does not have",
+                             name_of(shape), deep,
+                             in[0].keeps ? "its centre lies inside, from where no contact with "
+                                           "the surface brings it out"
+                                         : "a contact throws it out"));
     if (in[0].on_surface)
-      in_surface = fmt::format("particle {} begins at {}, its centre in the surface of {}",
-                               static_cast<std::int64_t>(lines[i]), place_text(s, x), in[0].what);
+      in_surface = fmt::format("{} begins at {}, its centre in the surface of {}", name_of(shape),
+                               place_text(s, x), in[0].what);
   }
   if (fluid.ranks().max(in_surface.empty() ? 0.0 : 1.0) > 0.0)
     throw InputError(
         in_surface.empty() ? "a particle begins in a surface" : in_surface,
         "a contact there has no direction, and the solid stops with \"Internal error\"",
         "start it beside the obstacle");
-  std::size_t said = 0;
-  for (const auto& [id, where] : found)
-    if (++said <= kNamed)
-      log.say(0, "warning",
-              "particle {} begins {}: a contact throws it out; start it outside, or leave out the "
-              "wall that its script does not have",
-              id, where);
+  std::size_t told = 0;
+  for (const auto& [id, text] : said)
+    if (++told <= kNamed) log.say(0, "warning", "{}", text);
   if (found.size() > kNamed)
     log.say(0, "warning", "… and {} more particles begin deep in a solid", found.size() - kNamed);
   return found;
@@ -117,6 +127,56 @@ void warn_of_count(const std::optional<std::int64_t>& told, const Decomposition&
           "box at the start: the fluid acts on no other; look at what the solid sends, and where "
           "its particles begin",
           *told, here);
+}
+
+namespace {
+
+/// The box around a mesh that moves, at rest, and where it is.
+struct Mover {
+  Pose pose;
+  Vec3 low, high;
+
+  bool may_hold(const Vec3& place) const {
+    const Eigen::AngleAxisd back(-pose.angle, pose.axis);
+    const Vec3 at_rest = pose.pivot + Vec3(back * Vec3(place - pose.centre()));
+    return (at_rest.array() >= low.array()).all() && (at_rest.array() <= high.array()).all();
+  }
+};
+
+std::vector<Mover> movers_of(const Scene& s, double time) {
+  std::vector<Mover> movers;
+  for (const ObstacleScene& o : s.obstacles) {
+    if (!o.mesh || !o.motion || o.motion->surface_only) continue;
+    const auto [low, high] = bounds(*o.mesh->surface);
+    movers.push_back({pose_at(*o.motion, time), low, high});
+  }
+  return movers;
+}
+
+}  // namespace
+
+std::string buried_text(const Scene& s, std::span<const protocol::Particle> particles, double time,
+                        const DeepStarts& starts) {
+  const std::vector<Mover> movers = movers_of(s, time);
+  std::size_t count = 0;
+  std::string first;
+  for (const protocol::Particle& p : particles) {
+    const double r = p.shape.radius;  // 0: of a clump its spheres are there
+    const Vec3 x = place_of(s, p);
+    if (r <= 0.0 || starts.contains(p.state.id) ||
+        std::ranges::none_of(movers, [&](const Mover& m) { return m.may_hold(x); }))
+      continue;
+    const auto in = solid_overlaps(s, x, r, time);
+    const auto mover = std::ranges::find_if(in, [](const auto& o) { return o.moves && o.keeps; });
+    if (mover == in.end() || ++count > 1) continue;
+    first = fmt::format("{} lies {:.3g} of its radius deep in {}, which moves", name_of(p.shape),
+                        mover->depth / r, mover->what);
+  }
+  if (count == 0) return {};
+  return first + (count > 1 ? fmt::format(", and so do {} more", count - 1) : "") +
+         ": what moves has gone over it, and no contact with its surface brings it out; let it "
+         "move slower, take stiffer contacts (particles.contact_stiffness and the script's) or "
+         "more coupling.substeps";
 }
 
 }  // namespace lbm

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "lbm_solver/coupling/particles.h"
@@ -28,5 +29,11 @@ DeepStarts warn_of_starts(const Scene& scene, const Plan& plan, const Fluid& flu
 /// @param told  what it counts; empty: it does not say
 void warn_of_count(const std::optional<std::int64_t>& told, const Decomposition& ranks,
                    const Particles& particles, Log& log);
+
+/// What to say of particles whose centres lie in a mesh that moves, and has gone over them; empty
+/// where there is none.
+/// @param starts  of those that began in a solid: they are known
+std::string buried_text(const Scene& scene, std::span<const protocol::Particle> particles,
+                        double time, const DeepStarts& starts);
 
 }  // namespace lbm

@@ -196,6 +196,23 @@ GreyImage read_h5(const std::string&, const std::string&) {
 }
 #endif
 
+/// Of a kind that we do not read: what we do, and a line of Python that makes such a file of it.
+[[noreturn]] void refuse_kind(const std::string& path, const std::string& kind) {
+  constexpr std::array kPictures{".jpg", ".jpeg", ".bmp", ".gif", ".webp", ".jp2"};
+  const std::filesystem::path name = std::filesystem::path(path).filename();
+  const auto as = [&](const char* other) {
+    return std::filesystem::path(name).replace_extension(other).string();
+  };
+  const std::string how =
+      std::ranges::find(kPictures, kind) != kPictures.end()
+          ? fmt::format("PIL.Image.open(\"{}\").convert(\"L\").save(\"{}\")", name.string(),
+                        as(".png"))
+          : fmt::format("numpy.save(\"{}\", array), the array as [y][x] or [z][y][x]", as(".npy"));
+  refuse(kind.empty() ? "does not say by its name of which kind it is"
+                      : fmt::format("is of a kind that is not read ({})", kind),
+         "give grey levels as .png, .tif, .npy, .h5 or .raw, in Python by " + how);
+}
+
 /// A voxel that is no number.
 void check_finite(const GreyImage& image) {
   const auto bad = std::find_if(image.levels.begin(), image.levels.end(),
@@ -216,8 +233,15 @@ std::vector<std::string> known_raw_types() {
   return names;
 }
 
+std::string image_kind(const std::string& path) {
+  std::string kind = std::filesystem::path(path).extension().string();
+  for (char& c : kind)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return kind;
+}
+
 GreyImage read_image(const std::string& path, const ImageLayout& layout) {
-  const std::string kind = std::filesystem::path(path).extension().string();
+  const std::string kind = image_kind(path);
   GreyImage image;
   if (kind == ".raw")
     image = read_raw(path, layout);
@@ -230,7 +254,7 @@ GreyImage read_image(const std::string& path, const ImageLayout& layout) {
   else if (kind == ".tif" || kind == ".tiff")
     image = read_tiff(path);
   else
-    refuse("is no image by its name", "give a .raw, .npy, .h5, .png or .tif file");
+    refuse_kind(path, kind);
   check_finite(image);
   return image;
 }

@@ -25,6 +25,9 @@ struct ImageLayout {
   std::string dataset;      ///< path in a .h5 file
 };
 
+/// What the end of a file's name says of it, in small letters: ".tif".
+std::string image_kind(const std::string& path);
+
 /// Reads .raw, .npy, .h5, .png (grey, 8 or 16 bits) or .tif (grey, one slice a page).
 /// Arrays of .npy and .h5 are [z][y][x] or [y][x]. Pictures are taken as they are seen: their first
 /// row is the highest y.

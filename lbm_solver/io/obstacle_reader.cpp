@@ -255,7 +255,7 @@ void check_levels(const TableReader& t, const GreyImage& image, const FractionRu
 
 /// Refuses keys of another kind of file.
 void check_layout(TableReader& t, const std::string& path) {
-  const std::string kind = std::filesystem::path(path).extension().string();
+  const std::string kind = image_kind(path);
   const std::string name = std::filesystem::path(path).filename().string();
   for (const char* key : {"raw_size", "raw_type"})
     if (t.has(key) && kind != ".raw")
@@ -368,7 +368,7 @@ void read_its_motion(TableReader& t, const std::string& scene_file, const BoxSce
 }  // namespace
 
 ObstacleScene read_obstacle(TableReader t, const std::string& scene_file, const BoxScene& box) {
-  ObstacleScene o;
+  ObstacleScene o{.where = t.place()};
   const int d = box.dimension;
   o.round = t.has("centre");
   if (t.has("mesh")) {

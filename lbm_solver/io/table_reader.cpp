@@ -115,10 +115,18 @@ void TableReader::note(const std::string& key, const std::string& value) const {
   if (settings_) (*settings_)[name_.empty() ? key : name_ + "." + key] = value;
 }
 
+std::string TableReader::place(const toml::node& node) const {
+  const toml::source_region& source = node.source();
+  if (!source.path || source.begin.line == 0) return file_;
+  return fmt::format("{}:{}", *source.path, source.begin.line);
+}
+
+std::string TableReader::place() const {
+  return place(table_);
+}
+
 std::string TableReader::where(const toml::node* node, const std::string& key) const {
-  const toml::source_region& source = node ? node->source() : table_.source();
-  if (!source.path || source.begin.line == 0) return fmt::format("{}: {}", file_, full(key));
-  return fmt::format("{}:{}: {}", *source.path, source.begin.line, full(key));
+  return fmt::format("{}: {}", node ? place(*node) : place(), full(key));
 }
 
 void TableReader::fail(const std::string& key, const std::string& problem,

@@ -88,6 +88,9 @@ class TableReader {
   /// @throws InputError for a key that was not asked for
   void finish() const;
 
+  /// Where the table stands: file and line.
+  std::string place() const;
+
   [[noreturn]] void fail(const std::string& key, const std::string& problem,
                          const std::string& remedy) const;
 
@@ -100,6 +103,7 @@ class TableReader {
   /// What stands in the table in place of a key that is missing.
   std::string misspelt(const std::string& key) const;
   const toml::node& need(const std::string& key, const std::string& what);
+  std::string place(const toml::node& node) const;
   std::string where(const toml::node* node, const std::string& key) const;
   double to_number(const toml::node& node, const std::string& key, const Bounds& bounds,
                    const std::string& unit) const;

@@ -135,7 +135,7 @@ void check_obstacle(const Scene& s, const ObstacleScene& o) {
   for (int k = 0; k < s.box.dimension; ++k) {
     const double lo = s.box.origin[k], hi = lo + s.box.size[k], r = 0.5 * o.diameter;
     if (o.centre[k] + r <= lo || o.centre[k] - r >= hi)
-      throw InputError(s.file + ": obstacle",
+      throw InputError(key_of(s, o),
                        fmt::format("{} with diameter {:.6g} m lies outside the box",
                                    place_text(s, o.centre), o.diameter),
                        fmt::format("the box is {:.6g} … {:.6g} m in {}", lo, hi, "xyz"[k]));
@@ -218,6 +218,11 @@ void check_carried_weight(const Scene& s) {
 std::string place_text(const Scene& s, const Vec3& x) {
   return s.box.dimension == 2 ? fmt::format("[{:.6g}, {:.6g}]", x.x(), x.y())
                               : fmt::format("[{:.6g}, {:.6g}, {:.6g}]", x.x(), x.y(), x.z());
+}
+
+std::string key_of(const Scene& s, const ObstacleScene& o, const std::string& key) {
+  return fmt::format("{}: obstacle{}{}", o.where.empty() ? s.file : o.where, key.empty() ? "" : ".",
+                     key);
 }
 
 double depth_in(const Scene& s, const ObstacleScene& o, const Vec3& x, double r) {

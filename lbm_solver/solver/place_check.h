@@ -15,6 +15,9 @@ void check_places(const Scene& scene);
 /// Overlap over a diameter that rounding may make.
 constexpr double kTouch = 1e-3;
 
+/// A key of an obstacle, or where that is empty its table, with file and line, as a message begins.
+std::string key_of(const Scene& scene, const ObstacleScene& obstacle, const std::string& key = {});
+
 /// How far a ball of radius r [m] lies in an obstacle, over its diameter; not positive outside.
 double depth_in(const Scene& scene, const ObstacleScene& obstacle, const Vec3& centre, double r);
 

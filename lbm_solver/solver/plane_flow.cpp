@@ -44,16 +44,18 @@ bool from_a_side(const Fluid& fluid, const Cell3& cell, int q, int axis) {
 PlaneFlow PlaneFlow::of(const Fluid& fluid, const CellBox& beyond, int axis) {
   PlaneFlow sum;
   const Lattice& lattice = fluid.lattice();
+  const bool crossed = fluid.steps() > 0;
   for (const int way : {1, -1}) {
     const CellBox layer = way > 0 ? beyond : before(beyond, fluid.domain(), axis);
     each_own_cell(fluid, layer, [&](int x, int y, int z) {
-      for (int q = 1; q < lattice.Q; ++q)
+      for (int q = 1; q < lattice.Q && crossed; ++q)
         if (lattice.c[q][axis] == way && !from_a_side(fluid, {x, y, z}, q, axis))
           sum.volume += way * fluid.arriving(q, x, y, z);
       const double open =
           fluid.has_solids() ? 1.0 - std::min(1.0, fluid.solid_fraction(x, y, z)) : 1.0;
       if (open <= 0.0) return;
       const Fluid::Cell cell = fluid.cell(x, y, z);
+      if (!crossed) sum.volume += 0.5 * open * cell.rho * cell.u[axis];
       sum.momentum += 0.5 * open * cell.rho * cell.u[axis] * cell.u;
       sum.pressure += 0.5 * open * (cell.rho - 1.0);
       sum.area += 0.5 * open;

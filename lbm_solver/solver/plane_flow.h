@@ -10,7 +10,9 @@ namespace lbm {
 /// populations that cross it,
 ///   Σ f_q (c_q forward, in the layer beyond) - Σ f_q (c_q backward, in the layer before),
 /// without those that come back from a side along the plane: the same through every plane of a
-/// steady flow, whatever covers the cells. All else is the mean of both layers, whose cells count
+/// steady flow, whatever covers the cells. Before the first step none have crossed (what is there
+/// lacks half of a body force, and would show a flow against it): it is then that of the initial
+/// velocity, Σ (1-ε) ρ u_n. All else is the mean of both layers, whose cells count
 /// by their part of fluid.
 struct PlaneFlow {
   double volume = 0.0;    ///< flow, positive along the axis

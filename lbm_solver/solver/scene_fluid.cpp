@@ -11,17 +11,19 @@
 #include "lbm_solver/immersed/geometry.h"
 #include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/solver/driven_speed.h"
+#include "lbm_solver/solver/place_check.h"
 #include "lbm_solver/solver/plan.h"
 
 namespace lbm {
 namespace {
 
 /// Nearest cell border of a length along an axis; complains where it lies off by more than a tenth.
-int border(const Scene& s, const Plan& p, double at, int axis, const std::string& what) {
+/// @param key  with its file, as a message begins
+int border(const Scene& s, const Plan& p, double at, int axis, const std::string& key) {
   const double cells = (at - s.box.origin[axis]) / p.units.dx, whole = std::round(cells);
   if (std::abs(cells - whole) > 0.1)
     throw InputError(
-        s.file + ": " + what,
+        key,
         fmt::format("{:.6g} m lies {:.2f} cells off a cell border", at, std::abs(cells - whole)),
         fmt::format("take {:.6g} m, or another cell", s.box.origin[axis] + whole * p.units.dx));
   return static_cast<int>(whole);
@@ -33,8 +35,8 @@ Opening opening(const Scene& s, const Plan& p, const BoundaryScene& b) {
   const int axis = axis_of(b.side);
   const int along[] = {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
   for (int k = 0; k < s.box.dimension - 1; ++k) {
-    if (b.from[k]) o.begin[k] = border(s, p, *b.from[k], along[k], "boundary.from");
-    if (b.to[k]) o.end[k] = border(s, p, *b.to[k], along[k], "boundary.to");
+    if (b.from[k]) o.begin[k] = border(s, p, *b.from[k], along[k], s.file + ": boundary.from");
+    if (b.to[k]) o.end[k] = border(s, p, *b.to[k], along[k], s.file + ": boundary.to");
     if (o.begin[k] >= o.end[k])
       throw InputError(s.file + ": boundary", "has from at or beyond to", "give from < to");
     o.closed[k] = o.closed[k] && o.begin[k] == 0 && o.end[k] == p.domain.cells()[along[k]];
@@ -121,10 +123,10 @@ CellBox cells_of(const Scene& s, const Plan& p, const ObstacleScene& o) {
   CellBox box;
   auto& [from, to] = box;
   for (int axis = 0; axis < s.box.dimension; ++axis) {
-    from[axis] = border(s, p, o.from[axis], axis, "obstacle.from");
-    to[axis] = border(s, p, o.to[axis], axis, "obstacle.to");
+    from[axis] = border(s, p, o.from[axis], axis, key_of(s, o, "from"));
+    to[axis] = border(s, p, o.to[axis], axis, key_of(s, o, "to"));
     if (from[axis] < 0 || to[axis] > p.domain.cells()[axis] || from[axis] >= to[axis])
-      throw InputError(s.file + ": obstacle",
+      throw InputError(key_of(s, o),
                        fmt::format("{:.6g} … {:.6g} m in {} is empty or outside the box",
                                    o.from[axis], o.to[axis], "xyz"[axis]),
                        "give its lower and upper corner");
@@ -159,14 +161,15 @@ MeshSolid drum_of(const Plan& p, const ObstacleScene& o) {
 }
 
 /// A voxel is a whole number of cells wide, or a cell of voxels.
-VoxelSolid solid_of(const Scene& s, const Plan& p, const ImageScene& image) {
+VoxelSolid voxels_of(const Scene& s, const Plan& p, const ObstacleScene& o) {
+  const ImageScene& image = *o.image;
   VoxelSolid solid;
   solid.voxels = image.voxels;
   const double wide = image.voxel / p.units.dx, times = std::max(wide, 1.0 / wide);
   constexpr double most = 10000.0;  // of one in the other; boxes are no wider
   if (!(times <= most) || std::abs(times - std::round(times)) > 1e-6 * times)
     throw InputError(
-        fmt::format("{}: obstacle.voxel = {:.6g} m is {:.6g} cells", s.file, image.voxel, wide),
+        fmt::format("{} = {:.6g} m is {:.6g} cells", key_of(s, o, "voxel"), image.voxel, wide),
         fmt::format("take a cell that is a whole number of voxels, or a voxel of whole cells, {} "
                     "at most",
                     most));
@@ -174,14 +177,14 @@ VoxelSolid solid_of(const Scene& s, const Plan& p, const ImageScene& image) {
   for (int k = 0; k < s.box.dimension; ++k) {
     const int voxels = image.voxels->size[k];
     if (voxels % solid.coarser != 0)
-      throw InputError(s.file + ": obstacle.image",
+      throw InputError(key_of(s, o, "image"),
                        fmt::format("has {} voxels along {}, and {} of them make a cell", voxels,
                                    "xyz"[k], solid.coarser),
                        "cut it to whole cells with cut_from and cut_to");
-    solid.at[k] = border(s, p, image.at[k], k, "obstacle.at");
+    solid.at[k] = border(s, p, image.at[k], k, key_of(s, o, "at"));
     const int end = solid.at[k] + solid.cells(k), n = p.domain.cells()[k];
     if (solid.at[k] < 0 || end > n)
-      throw InputError(s.file + ": obstacle.image",
+      throw InputError(key_of(s, o, "image"),
                        fmt::format("takes cells {} … {} along {}, the box has {}", solid.at[k], end,
                                    "xyz"[k], n),
                        "move it, or cut it with cut_from and cut_to");
@@ -230,7 +233,7 @@ void add_shape(const Scene& s, const Plan& p, const Geometry& shape, const Obsta
                : std::nullopt;
   fluid.add(std::get<MeshSolid>(shape.shape), pose, drum, steady);
 } catch (const std::invalid_argument& error) {
-  throw InputError(s.file + ": obstacle.mesh", error.what(),
+  throw InputError(key_of(s, o, "mesh"), error.what(),
                    "turn it outwards, or leave the inner shell out");
 }
 
@@ -314,7 +317,7 @@ std::vector<Geometry> obstacle_shapes(const Scene& s, const Plan& p) {
   std::vector<Geometry> shapes;
   for (const ObstacleScene& o : s.obstacles) {
     if (o.mesh) shapes.push_back({solid_of(p, *o.mesh)});
-    if (o.image) shapes.push_back({solid_of(s, p, *o.image)});
+    if (o.image) shapes.push_back({voxels_of(s, p, o)});
     if (o.drum()) shapes.push_back({drum_of(p, o)});
   }
   return shapes;

@@ -8,6 +8,21 @@ namespace dem {
 namespace {
 
 constexpr std::size_t kLongestLine = 10'000;  // bytes that are kept
+constexpr int kMostLines = 12;                // of an error; LIGGGHTS' longest have eight
+
+/// The place in its source, which ends each error of LIGGGHTS.
+const std::regex& source() {
+  static const std::regex place(R"( ?\([^()\s]*:\d+\)\s*$)");
+  return place;
+}
+
+/// Without those at its ends.
+std::string without_blanks(const std::string& line) {
+  constexpr const char* kBlanks = " \t\r";
+  const auto begin = line.find_first_not_of(kBlanks);
+  if (begin == std::string::npos) return {};
+  return line.substr(begin, line.find_last_not_of(kBlanks) - begin + 1);
+}
 
 }  // namespace
 
@@ -33,15 +48,24 @@ void ScreenEar::take(const char* text, std::size_t size) {
       if (line_.size() < kLongestLine) line_ += *c;
       continue;
     }
-    if (line_.starts_with("ERROR")) last_error_ = line_;
-    const std::string whole = std::exchange(line_, {});
-    if (tell_ && whole.starts_with("WARNING")) tell_(whole);
+    hear(std::exchange(line_, {}));
   }
 }
 
+void ScreenEar::hear(const std::string& line) {
+  if (line.starts_with("ERROR")) {
+    last_error_ = without_blanks(line);
+    lines_to_come_ = kMostLines;
+  } else if (lines_to_come_ > 0) {
+    if (const std::string more = without_blanks(line); !more.empty()) last_error_ += " " + more;
+    --lines_to_come_;
+  }
+  if (lines_to_come_ > 0 && std::regex_search(line, source())) lines_to_come_ = 0;
+  if (tell_ && line.starts_with("WARNING")) tell_(line);
+}
+
 std::string without_source(const std::string& error) {
-  static const std::regex place(R"( \([^()\s]*:\d+\)\s*$)");
-  return std::regex_replace(error, place, "");
+  return std::regex_replace(error, source(), "");
 }
 
 std::string advice_for(const std::string& error) {

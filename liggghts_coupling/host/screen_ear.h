@@ -8,9 +8,9 @@
 
 namespace dem {
 
-/// Stands between LIGGGHTS and its screen: passes on what is written, remembers the last line that
-/// begins with ERROR, and tells of each that begins with WARNING. What one process says goes to the
-/// screen alone, in no log.
+/// Stands between LIGGGHTS and its screen: passes on what is written, remembers the last error (a
+/// line that begins with ERROR, and those behind it up to the place in the source), and tells of
+/// each that begins with WARNING. What one process says goes to the screen alone, in no log.
 class ScreenEar {
  public:
   /// What LIGGGHTS is to write to. It closes it; this object must live until then.
@@ -21,14 +21,17 @@ class ScreenEar {
   /// @param tell  called with each line that begins with WARNING, without its end
   void tell_warnings(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
 
+  /// In one line.
   const std::string& last_error() const { return last_error_; }
 
  private:
   void take(const char* text, std::size_t size);
+  void hear(const std::string& line);
 
   std::FILE* screen_ = nullptr;
   std::function<void(const std::string&)> tell_;
   std::string line_, last_error_;
+  int lines_to_come_ = 0;  // of the last error, at most
 };
 
 /// A line of LIGGGHTS without the place in its source, which ends it: " (pair.cpp:12)".

@@ -14,6 +14,7 @@
 
 #include "liggghts_coupling/host/script_checks.h"
 #include "protocol/wire/errors.h"
+#include "protocol/wire/names.h"
 #include "protocol/wire/overlap.h"
 
 namespace dem {
@@ -41,13 +42,12 @@ struct Inside : FixRigid {
   static constexpr auto turn = &Inside::torque;
 };
 
-/// Ids of clumps are below that which says "itself"; those of a fix rigid keep apart from those of
-/// fix multisphere and of each other.
+/// Clumps of a fix rigid keep apart from those of fix multisphere and of each other.
 std::int64_t multisphere_id(int tag) {
-  return protocol::kItself - tag;
+  return protocol::clump_id(0, tag);
 }
 std::int64_t rigid_id(std::size_t number, int body) {
-  return protocol::kItself - ((static_cast<std::int64_t>(number) + 1) << 32) - 1 - body;
+  return protocol::clump_id(static_cast<std::int64_t>(number) + 1, body + 1);
 }
 
 Vec3 vector(const double* v) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "protocol/wire/names.h"
 #include "protocol/wire/text.h"
 
 namespace protocol {
@@ -74,7 +75,7 @@ std::vector<IntervalRecord> timeline(const Trace& trace) {
     for (const State& s : record.states) {
       const auto shape = shapes.find(s.id);
       if (shape == shapes.end())
-        throw std::runtime_error(format("the trace never tells the shape of {}", s.id));
+        throw std::runtime_error(format("the trace never tells the shape of {}", name_of(s.id)));
       record.shapes.push_back(shape->second);
     }
     result.push_back(std::move(record));
@@ -209,8 +210,8 @@ void TraceComparison::loads(std::int64_t interval, std::span<const Load> a,
 std::string TraceComparison::text() const {
   if (!first_) return "identical, bit for bit";
   const auto place = [](const char* which, const Difference& d) {
-    return format("{} at interval {}, particle {}, {}: {:.17g} against {:.17g}; ", which,
-                  d.interval, d.id, d.field, d.a, d.b);
+    return format("{} at interval {}, {}, {}: {:.17g} against {:.17g}; ", which, d.interval,
+                  name_of(d.id), d.field, d.a, d.b);
   };
   std::string first = place("first difference", *first_);
   if (tolerance_ > 0.0 && beyond_) first += place("first beyond the tolerance", *beyond_);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "protocol/wire/names.h"
 #include "protocol/wire/overlap.h"
 #include "protocol/wire/refusal.h"
 
@@ -28,7 +29,7 @@ double norm(const Vec3& v) {
 
 void expect_finite(std::int64_t id, const Vec3& value, const char* what, std::int64_t interval) {
   if (std::isfinite(value[0]) && std::isfinite(value[1]) && std::isfinite(value[2])) return;
-  throw BadMessage(format("particle {}: {} is ({}, {}, {}) at interval {}: not finite", id, what,
+  throw BadMessage(format("{}: {} is ({}, {}, {}) at interval {}: not finite", name_of(id), what,
                           value[0], value[1], value[2], interval),
                    kNumerics);
 }
@@ -82,26 +83,27 @@ void ArrivalCheck::shape(const Shape& s, const Shape* known, bool clump,
   const bool part = is_part(s);
   if (part && (s.mass != 0.0 || s.inertia != 0.0 || s.volume != 0.0))
     refuse(
-        "particle {} is a sphere of clump {}, but has a mass of {} kg, an inertia of {} kg m² and "
+        "{} is a sphere of {}, but has a mass of {} kg, an inertia of {} kg m² and "
         "a volume of {} m³ at interval {}: the clump has them, a sphere of it says 0",
-        s.id, s.carrier, s.mass, s.inertia, s.volume, interval);
+        name_of(s.id), name_of(s.carrier, true), s.mass, s.inertia, s.volume, interval);
   if (!positive(s.radius) || (!part && (!positive(s.mass) || !positive(s.inertia))))
-    refuse("particle {}: radius {} m, mass {} kg, inertia {} kg m² must be positive (interval {})",
-           s.id, s.radius, s.mass, s.inertia, interval);
+    refuse("{}: radius {} m, mass {} kg, inertia {} kg m² must be positive (interval {})",
+           name_of(s.id, clump), s.radius, s.mass, s.inertia, interval);
   clump = clump && !part;
   if (clump && !positive(s.volume))
-    refuse("clump {}: volume {} m³ at interval {}: tell that of the union of its spheres", s.id,
-           s.volume, interval);
+    refuse("{}: volume {} m³ at interval {}: tell that of the union of its spheres",
+           name_of(s.id, true), s.volume, interval);
   if (s.type < 1)
-    refuse("particle {}: type {} at interval {}: types begin at 1", s.id, s.type, interval);
+    refuse("{}: type {} at interval {}: types begin at 1", name_of(s.id, clump), s.type, interval);
   if (!clump) sizes(s, interval);
   if (!part) inertia(s, clump, interval);
   if (known && known->epoch == s.epoch &&
       std::abs(s.radius - known->radius) > kGrowth * known->radius)
     refuse(
-        "particle {}: radius {:.6g} m at interval {}, {:.6g} m one exchange before: let it grow by "
-        "less than a tenth between two, or begin it anew with another epoch",
-        s.id, s.radius, interval, known->radius);
+        "{}: radius {:.6g} m at interval {}, {:.6g} m one exchange before: let it grow by less "
+        "than "
+        "a tenth between two, or begin it anew with another epoch",
+        name_of(s.id, clump), s.radius, interval, known->radius);
 }
 
 namespace {
@@ -137,17 +139,19 @@ void ArrivalCheck::inertia(const Shape& s, bool clump, std::int64_t interval) co
   const double density = s.mass / volume;
   if (!within(density, fluid_.density, clump ? kUnion : kSlack))
     refuse(
-        "particle {}: density {:.6g} kg/m³ at interval {} (mass {:.6g} kg in {:.6g} m³), the "
+        "{}: density {:.6g} kg/m³ at interval {} (mass {:.6g} kg in {:.6g} m³), the "
         "scene's particles.density says {:.6g} … {:.6g} kg/m³; correct one of them{}",
-        s.id, density, interval, s.mass, volume, fluid_.density->lo, fluid_.density->hi,
+        name_of(s.id, clump), density, interval, s.mass, volume, fluid_.density->lo,
+        fluid_.density->hi,
         fluid_.dimension == 2
             ? format("; a disc has a mass of π r² × density × the depth of {:.6g} m", fluid_.depth)
             : "");
   if (const double most = s.mass * s.radius * s.radius; s.inertia > most * (1.0 + kSlack))
     refuse(
-        "particle {}: inertia {:.6g} kg m² at interval {}: no ball of {:.6g} kg and radius {:.6g} "
-        "m has more than {:.6g} kg m²",
-        s.id, s.inertia, interval, s.mass, s.radius, most);
+        "{}: inertia {:.6g} kg m² at interval {}: no ball of {:.6g} kg and radius {:.6g} m has "
+        "more "
+        "than {:.6g} kg m²",
+        name_of(s.id, clump), s.inertia, interval, s.mass, s.radius, most);
 }
 
 /// On an axis that is not periodic, no farther out than a particle that touches fluid.
@@ -188,9 +192,9 @@ void ArrivalCheck::examine(const Particle& now, const State* before, std::int64_
   expect_finite(s.id, s.omega, "angular velocity", interval);
   if (!in_plane(s, shape))
     refuse(
-        "particle {} leaves the plane at interval {}: velocity {} m/s, angular velocity {} rad/s; "
+        "{} leaves the plane at interval {}: velocity {} m/s, angular velocity {} rad/s; "
         "in two dimensions v_z, ω_x and ω_y are 0 (LIGGGHTS: fix enforce2d)",
-        s.id, interval, text(s.v), text(s.omega));
+        name_of(s.id), interval, text(s.v), text(s.omega));
   if (is_part(shape)) return;  // its place is held against its carrier's
   if (!inside(now)) {
     double out = 0.0;
@@ -198,20 +202,19 @@ void ArrivalCheck::examine(const Particle& now, const State* before, std::int64_
       if (!fluid_.periodic[k])
         out = std::max({out, fluid_.box_lo[k] - s.x[k], s.x[k] - fluid_.box_hi[k]});
     refuse(
-        "particle {}: its centre {} m lies {:.6g} m outside of the box at interval {}, its radius "
+        "{}: its centre {} m lies {:.6g} m outside of the box at interval {}, its radius "
         "is {:.6g} m; a solid sends no particle that touches no fluid",
-        s.id, text(s.x), out, interval, shape.radius);
+        name_of(s.id), text(s.x), out, interval, shape.radius);
   }
   if (!before || near(now, *before)) return;
   Vec3 way{};
   for (unsigned k = 0; k < fluid_.dimension; ++k) way[k] = moved(s, *before, k);
   const double diameter = 2.0 * shape.radius;
   refuse(
-      "particle {} jumped from {} to {} m in interval {}: {:.3g} diameters, where its velocity and "
-      "load explain {:.3g}; contacts have thrown it, or it was put there (then it begins anew, "
-      "with "
+      "{} jumped from {} to {} m in interval {}: {:.3g} diameters, where its velocity and load "
+      "explain {:.3g}; contacts have thrown it, or it was put there (then it begins anew, with "
       "another epoch)",
-      s.id, text(before->x), text(s.x), interval, norm(way) / diameter,
+      name_of(s.id), text(before->x), text(s.x), interval, norm(way) / diameter,
       interval_ * fastest(s, *before) / diameter);
 }
 

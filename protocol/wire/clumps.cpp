@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "protocol/wire/ball_union.h"
+#include "protocol/wire/names.h"
 #include "protocol/wire/refusal.h"
 
 namespace protocol {
@@ -42,12 +43,13 @@ ClumpCheck::Clumps ClumpCheck::find(std::span<const Particle> particles,
       const auto at = std::lower_bound(particles.begin(), particles.end(), shape.carrier, before);
       if (at == particles.end() || at->state.id != shape.carrier)
         refuse(
-            "particle {} is a sphere of clump {}, which did not come with it at interval {}: a "
-            "clump comes whole, its carrier and all its spheres",
-            shape.id, shape.carrier, interval);
+            "{} is a sphere of {}, which did not come with it at interval {}{}: a clump comes "
+            "whole, its carrier and all its spheres",
+            name_of(shape.id), name_of(shape.carrier, true), interval, where(particles[i].state.x));
       if (is_part(at->shape))
-        refuse("particle {} is a sphere of {}, which is a sphere of {} itself (interval {})",
-               shape.id, shape.carrier, at->shape.carrier, interval);
+        refuse("{} is a sphere of {}, which is a sphere of {} itself (interval {})",
+               name_of(shape.id), name_of(shape.carrier, true), name_of(at->shape.carrier, true),
+               interval);
       clump.carrier = static_cast<std::size_t>(at - particles.begin());
     }
     clump.spheres.push_back(i);
@@ -65,11 +67,11 @@ void ClumpCheck::volume(std::span<const Particle> particles, const Clump& clump,
   const double tolerance = balls.size() == 1 ? kClumpSlack : kVolume;
   if (std::abs(shape.volume - together) <= tolerance * together) return;
   refuse(
-      "clump {}: volume {:.6g} m³ at interval {}, its {} spheres fill {:.6g} m³ together: it would "
-      "be lifted by what it says; tell the volume of their union, to 1 % (LIGGGHTS: raise ntry of "
-      "its "
+      "{}: volume {:.6g} m³ at interval {}{}, its {} spheres fill {:.6g} m³ together: it would be "
+      "lifted by what it says; tell the volume of their union, to 1 % (LIGGGHTS: raise ntry of its "
       "template)",
-      shape.id, shape.volume, interval, clump.spheres.size(), together);
+      name_of(shape.id, true), shape.volume, interval, where(state.x), clump.spheres.size(),
+      together);
 }
 
 void ClumpCheck::learn(std::span<const Particle> particles, std::span<const std::int64_t> told,
@@ -84,8 +86,8 @@ void ClumpCheck::learn(std::span<const Particle> particles, std::span<const std:
       const double radius = particles[clump.carrier].shape.radius;
       const double length = fluid_.box_hi[k] - fluid_.box_lo[k];
       if (fluid_.periodic[k] && 2.0 * radius > length)
-        refuse("clump {}: radius {:.6g} m at interval {}, the box has {:.6g} m on a periodic axis",
-               id, radius, interval, length);
+        refuse("{}: radius {:.6g} m at interval {}, the box has {:.6g} m on a periodic axis",
+               name_of(id, true), radius, interval, length);
     }
     const auto was = before.find(id);
     const bool other = was == before.end() || was->second.spheres.size() != clump.spheres.size();
@@ -95,9 +97,9 @@ void ClumpCheck::learn(std::span<const Particle> particles, std::span<const std:
   for (const Particle& p : particles)
     if (before.contains(p.state.id) && !clumps_.contains(p.state.id))
       refuse(
-          "clump {} came without its spheres at interval {}: a clump comes whole; one that falls "
-          "apart leaves, and its spheres come with other ids",
-          p.state.id, interval);
+          "{} came without its spheres at interval {}{}: a clump comes whole; one that falls apart "
+          "leaves, and its spheres come with other ids",
+          name_of(p.state.id, true), interval, where(p.state.x));
 }
 
 void ClumpCheck::places(std::span<const Particle> particles, std::int64_t interval) const {
@@ -108,9 +110,10 @@ void ClumpCheck::places(std::span<const Particle> particles, std::int64_t interv
       const double out = std::hypot(a[0], a[1], a[2]) + particles[i].shape.radius;
       if (out <= shape.radius * (1.0 + kClumpSlack)) continue;
       refuse(
-          "clump {}: its sphere {} reaches {:.9g} m from its centre at interval {}, its radius is "
+          "{}: its sphere {} reaches {:.9g} m from its centre at interval {}{}, its radius is "
           "{:.9g} m: that of the ball about its centre that holds all its spheres",
-          id, particles[i].state.id, out, interval, shape.radius);
+          name_of(id, true), particles[i].state.id, out, interval, where(particles[i].state.x),
+          shape.radius);
     }
   }
 }

@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "protocol/wire/names.h"
 #include "protocol/wire/session_parts.h"
 #include "protocol/wire/text.h"
 
@@ -14,9 +15,8 @@ namespace protocol {
 namespace {
 
 [[noreturn]] void refuse_load(std::int64_t id, std::int64_t expected, std::int64_t interval) {
-  throw ProtocolError(
-      format("the fluid computed a load of particle {} in place of {} at interval {}", id, expected,
-             interval));
+  throw ProtocolError(format("the fluid computed a load of {} in place of {} at interval {}",
+                             name_of(id), name_of(expected), interval));
 }
 
 }  // namespace
@@ -202,21 +202,21 @@ void FluidSession::merge_anew(const std::vector<StateBatch>& batches) {
     const auto shape = shapes_.find(o.id);
     if (shape == shapes_.end())
       throw BadMessage(
-          format("particle {} came without radius and mass at interval {}", o.id, next_interval_));
+          format("{} came without radius and mass at interval {}", name_of(o.id), next_interval_));
     if (!present.emplace(o.id, shape->second).second)
-      throw BadMessage(format(
-          "particle {} came twice at interval {}: each solid rank gives only those that it owns",
-          o.id, next_interval_));
+      throw BadMessage(
+          format("{} came twice at interval {}: each solid rank gives only those that it owns",
+                 name_of(o.id), next_interval_));
     order_[o.rank][o.record] = arrival_.particles.size();
     arrival_.particles.push_back({batches[o.rank].states[o.record], shape->second});
     ids_.push_back(o.id);
   }
   if (const auto twice = std::adjacent_find(told.begin(), told.end()); twice != told.end())
     throw BadMessage(
-        format("two shapes of particle {} came at interval {}", *twice, next_interval_), kBadInput);
+        format("two shapes of {} came at interval {}", name_of(*twice), next_interval_), kBadInput);
   for (const std::int64_t id : told)
     if (!present.contains(id))
-      throw BadMessage(format("a shape of particle {} came at interval {}, but no state of it", id,
+      throw BadMessage(format("a shape of {} came at interval {}, but no state of it", name_of(id),
                               next_interval_),
                        kBadInput);
   shapes_ = std::move(present);  // a particle that vanished must introduce itself again

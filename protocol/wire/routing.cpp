@@ -6,6 +6,7 @@
 
 #include "protocol/wire/clumps.h"
 #include "protocol/wire/errors.h"
+#include "protocol/wire/names.h"
 #include "protocol/wire/text.h"
 
 namespace protocol {
@@ -43,9 +44,9 @@ std::vector<std::size_t> routed_by(std::span<const Shape> shapes) {
     const auto carrier = carriers.find(shapes[i].carrier);
     if (carrier == carriers.end())
       throw ProtocolError(
-          format("particle {} is a sphere of clump {}, which this rank does not send: the rank "
-                 "that sends a clump sends all its spheres",
-                 shapes[i].id, shapes[i].carrier),
+          format("{} is a sphere of {}, which this rank does not send: the rank that sends a clump "
+                 "sends all its spheres",
+                 name_of(shapes[i].id), name_of(shapes[i].carrier, true)),
           kBadInput);
     by[i] = carrier->second;
   }

@@ -5,6 +5,7 @@
 
 #include "protocol/wire/agreement.h"
 #include "protocol/wire/codec.h"
+#include "protocol/wire/names.h"
 
 namespace protocol {
 
@@ -20,7 +21,7 @@ void settle(Channel& channel, const Hello& fluid, const Hello& solid, const Wait
 }
 
 void refuse_vector(std::int64_t id, const Vec3& value, const char* what, std::int64_t interval) {
-  throw BadMessage(format("particle {}: {} is ({}, {}, {}) at interval {}: not finite", id, what,
+  throw BadMessage(format("{}: {} is ({}, {}, {}) at interval {}: not finite", name_of(id), what,
                           value[0], value[1], value[2], interval),
                    kNumerics);
 }

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "protocol/wire/names.h"
 #include "protocol/wire/numbers.h"
 #include "protocol/wire/routing.h"
 #include "protocol/wire/session_parts.h"
@@ -15,9 +16,9 @@ namespace {
 
 [[noreturn]] void refuse_astray(const State& s, std::int64_t interval) {
   throw ProtocolError(
-      format("particle {}: its centre ({:.6g}, {:.6g}, {:.6g}) m lies far outside of the box "
-             "at interval {}; correct its place, or delete it",
-             s.id, s.x[0], s.x[1], s.x[2], interval),
+      format("{}: its centre ({:.6g}, {:.6g}, {:.6g}) m lies far outside of the box at interval "
+             "{}; correct its place, or delete it",
+             name_of(s.id), s.x[0], s.x[1], s.x[2], interval),
       kBadInput);
 }
 
@@ -130,8 +131,8 @@ std::uint32_t SolidSession::add_loads(int rank) {
     const Load& part = batch.loads[i];
     Load& sum = loads_[sent_[rank][i]];
     if (part.id != sum.id)
-      throw BadMessage(format("fluid rank {} answered a load for particle {} in place of {}", rank,
-                              part.id, sum.id));
+      throw BadMessage(format("fluid rank {} answered a load for {} in place of {}", rank,
+                              name_of(part.id), name_of(sum.id)));
     expect_finite(part, part.force, "hydrodynamic force", head.interval);
     expect_finite(part, part.torque, "hydrodynamic torque", head.interval);
     for (int k = 0; k < 3; ++k) {

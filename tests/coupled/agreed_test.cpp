@@ -192,6 +192,19 @@ TEST(OneSidedWalls, AWallThatTheScriptLacksIsNamed) {
                   {"side back (z = 0 m) is a wall for the fluid, no plane wall of the solid"});
 }
 
+// In the side, or before it: then the fluid does not know it, but no sphere comes to the side.
+TEST(OneSidedWalls, AMeshThatCoversASideIsItsWall) {
+  const std::string floor =
+      "\nfix plates all wall/gran model hertz tangential history mesh n_meshes 1 meshes plate";
+  expect_warnings(
+      Spheres().run(kSides +
+                    "\nfix plate all mesh/surface file floor.stl type 1 move 0. 0. -0.003" + floor),
+      {});
+  expect_warnings(
+      Spheres().run(kSides + "\nfix plate all mesh/surface file floor.stl type 1" + floor),
+      {"fix plate mesh/surface (of fix plates wall/gran) is a wall for the particles only"});
+}
+
 TEST(OneSidedWalls, MeshesCylindersAndPlanesInsideAreNamed) {
   expect_warnings(
       Spheres().run(

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "lbm_solver/io/scene_reader.h"
+#include "protocol/wire/names.h"
 #include "tests/unit/lbm_solver/scene_files.h"
 
 namespace {
@@ -34,7 +35,7 @@ std::string said(const Situation& now) {
   std::vector<protocol::Particle> particles;
   for (const auto& [x, y] : now.discs) {
     protocol::Particle p{};
-    p.state.id = static_cast<std::int64_t>(particles.size() + 1);
+    p.state.id = p.shape.id = static_cast<std::int64_t>(particles.size() + 1);
     p.state.x = {x, y, 0.0};
     p.state.v = {0.0, 0.01 * static_cast<double>(particles.size()), 0.0};
     p.shape.radius = 1.25e-3;
@@ -51,7 +52,7 @@ void expect_says(const Situation& now, const std::vector<std::string>& words) {
 
 TEST(Diagnosis, OfDiscsThatOverlap) {
   expect_says({.at = Vec3(0.01, 0.0315, 0.0), .discs = {{0.01, 0.03}, {0.0101, 0.0281}}},
-              {"The nearest particle is 1, 0.2 radii from there", "It overlaps particle 2 by 0.478",
+              {"The nearest is particle 1, 0.2 radii from there", "It overlaps particle 2 by 0.478",
                "start particles apart"});
   expect_says({.at = std::nullopt, .discs = {{0.01, 0.03}, {0.0101, 0.0281}}},
               {"It is particle 2.", "overlaps particle 1"});
@@ -90,6 +91,31 @@ TEST(Diagnosis, OfADiscThatWasThrownOut) {
   EXPECT_EQ(
       said({.at = Vec3(0.01, 0.04, 0.0), .discs = {{0.01, 0.03}}, .starts = starts}).find("began"),
       std::string::npos);
+}
+
+// A block of 10 x 10 mm that goes to the left at 40 mm/s; the second disc is a clump's.
+TEST(Buried, AreThoseThatAMeshHasGoneOver) {
+  const test::TemporaryFolder folder;
+  const Scene scene = read_scene({folder.write(
+      "scene.toml",
+      test::replaced(test::good_scene(), "[run]",
+                     "[[obstacle]]\nfrom = [0.005, 0.02]\nto = [0.015, 0.03]\nmotion = "
+                     "\"linear\"\nvelocity = [-0.04, 0.0]\n[run]"))});
+  std::vector<protocol::Particle> particles(2);
+  for (std::int64_t i = 0; i < 2; ++i) {
+    particles[i].state.id = particles[i].shape.id = i + 1;
+    particles[i].state.x = {0.004 + 0.012 * static_cast<double>(i), 0.025, 0.0};
+    particles[i].shape.radius = 1.25e-3;
+  }
+  particles[0].shape.carrier = protocol::clump_id(2, 7);
+  EXPECT_EQ(buried_text(scene, particles, 0.0, {}), "");
+  const std::string text = buried_text(scene, particles, 0.1, {});  // from 1 mm to 11 mm
+  EXPECT_EQ(
+      text.find("particle 1 (of clump 7 of the 2. fix rigid) lies 3.4 of its radius deep in "
+                "the 1. obstacle (mesh of a block), which moves: what moves has gone over it"),
+      0U)
+      << text;
+  EXPECT_EQ(buried_text(scene, particles, 0.1, {{1, "known"}}), "");
 }
 
 TEST(Diagnosis, OfAParticleThatIsTooFastByItself) {

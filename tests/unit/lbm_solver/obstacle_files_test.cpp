@@ -202,12 +202,16 @@ TEST_F(ObstacleFiles, ABadImageIsDescribed) {
   refused(3, raw + "grey_levels = [0, 1]", {"stands beside grey_levels"});
   refused(3, raw + "at = [0.006, 0, 0]", {"takes cells 6 … 10 along x, the box has 8"});
   refused(3, raw + "cut_to = [5, 3, 2]", {"they do not fill what is between 0 and 5 in x"});
-  refused(3, test::replaced(raw, "voxel = 0.001", "voxel = 0.0015"), {"is 1.5 cells"});
+  refused(3, test::replaced(raw, "voxel = 0.001", "voxel = 0.0015"),
+          {"scene.toml:", ": obstacle.voxel = 0.0015 m is 1.5 cells"});
   for (const char* voxel : {"voxel = 5e-30", "voxel = 5e-300", "voxel = 1e30"})
     refused(3, test::replaced(raw, "voxel = 0.001", voxel), {"cells", "10000 at most"});
   refused(3, test::replaced(raw, "voxel = 0.001", "voxel = 0.0005"),
-          {"has 3 voxels along y, and 2 of them make a cell"});
-  refused(3, raw + "[[obstacle]]\nimage = \"rock.jpg\"\nvoxel = 1\nthreshold = 1", {"rock.jpg"});
+          {"obstacle.image: has 3 voxels along y, and 2 of them make a cell"});
+  folder_.write("rock.JPG", "no picture");
+  refused(3, "image = \"rock.JPG\"\nvoxel = 1\nthreshold = 1",
+          {"\"rock.JPG\" is of a kind that is not read (.jpg)",
+           "PIL.Image.open(\"rock.JPG\").convert(\"L\").save(\"rock.png\")"});
   refused(2, test::replaced(raw, "[4, 3, 2]", "[4, 6]") + "cut_to = [9, 6]",
           {"they do not fill what is between"});
   folder_.write("rock.npy", "no array");

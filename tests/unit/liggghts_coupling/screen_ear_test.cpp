@@ -33,6 +33,24 @@ TEST(ScreenEar, NeedsNoScreen) {
   EXPECT_EQ(ear.last_error(), "ERROR: alone");
 }
 
+// As LIGGGHTS writes them: the place in the source behind the text, whose last line may be empty.
+TEST(ScreenEar, KeepsAllLinesOfAnError) {
+  dem::ScreenEar ear;
+  std::FILE* stream = ear.listen(nullptr);
+  std::fputs(
+      "ERROR: Unable to calculate region volume. Possible sources of error: \n"
+      "   (a) region volume is too small\n   (b) particles are too large\n (../src/a.cpp:7)\n"
+      "Step Atoms\n",
+      stream);
+  std::fflush(stream);
+  EXPECT_EQ(dem::without_source(ear.last_error()),
+            "ERROR: Unable to calculate region volume. Possible sources of error: (a) region "
+            "volume is too small (b) particles are too large");
+  std::fputs("ERROR on proc 1: one (a.cpp:1)\nno more\n", stream);
+  std::fclose(stream);
+  EXPECT_EQ(ear.last_error(), "ERROR on proc 1: one (a.cpp:1)");
+}
+
 TEST(ScreenEar, TellsOfEachWarning) {
   dem::ScreenEar ear;
   std::vector<std::string> told;

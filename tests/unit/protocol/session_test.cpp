@@ -335,7 +335,7 @@ TEST(Session, AnAnswerMustFitTheParticles) {
   EXPECT_EQ(said_of({{1, {}, {}}, {2, {}, {}}, {3, {}, {}}}),
             "the fluid computed 3 loads for 2 particles at interval 0");
   EXPECT_EQ(said_of({{2, {}, {}}, {1, {}, {}}}),
-            "the fluid computed a load of particle 2 in place of 1 at interval 0");
+            "the fluid computed a load of particle 2 in place of particle 1 at interval 0");
 }
 
 TEST(Session, ASilentPartnerIsNamedWithTheIntervalWaitedFor) {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "protocol/wire/names.h"
+
 namespace {
 
 /// Numbers of all sizes, and those at which the form changes.
@@ -56,6 +58,18 @@ TEST(Text, PutsEachArgumentInItsField) {
   EXPECT_EQ(protocol::format("a {} b {} c", "{}", 2), "a {} b 2 c");
   EXPECT_EQ(protocol::join(std::vector<int>{1, 2, 3}, ", "), "1, 2, 3");
   EXPECT_EQ(protocol::join(std::vector<std::string>{}, ", "), "");
+}
+
+// LIGGGHTS' bodies lie below -1: of fix multisphere by their number, of each fix rigid apart.
+TEST(Names, TellClumpsFromParticles) {
+  EXPECT_EQ(protocol::name_of(7), "particle 7");
+  EXPECT_EQ(protocol::name_of(7, true), "clump 7");
+  EXPECT_EQ(protocol::name_of(-3), "clump 2");
+  EXPECT_EQ(protocol::name_of(-4294967298), "clump 1 of the 1. fix rigid");
+  EXPECT_EQ(protocol::name_of(protocol::clump_id(3, 12)), "clump 12 of the 3. fix rigid");
+  EXPECT_EQ(protocol::name_of(protocol::Shape{.id = 5, .carrier = protocol::clump_id(0, 2)}),
+            "particle 5 (of clump 2)");
+  EXPECT_EQ(protocol::name_of(protocol::Shape{.id = 5}), "particle 5");
 }
 
 }  // namespace
