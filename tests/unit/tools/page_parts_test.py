@@ -11,7 +11,7 @@ import page_test  # beside this file: an output folder as lbm writes one
 import h5py
 import numpy as np
 from bplbm import early_end
-from bplbm.page import run as page_of_run, sensors
+from bplbm.page import histories, run as page_of_run, sensors
 from bplbm.results import Run
 
 
@@ -86,6 +86,12 @@ class Sensors(page_test.Output):
             self.assertEqual((sensors.charts(run), sensors.averages(run)), ([], []))
         self.assertNotIn("Sensors", self.page())
         self.assertNotIn("Averages", self.page())
+
+
+class Names(unittest.TestCase):
+    def test_clumps_are_called_as_messages_call_them(self):
+        names = [histories.particle_name(number) for number in (7.0, -2.0, -3.0, -1 - 2**32 - 1, -1 - 3 * 2**32 - 12)]
+        self.assertEqual(names, ["particle 7", "clump 1", "clump 2", "clump 1 of the 1. fix rigid", "clump 12 of the 3. fix rigid"])
 
 
 class Repeat(page_test.Output):
