@@ -170,7 +170,7 @@ class Images(unittest.TestCase):
             axes = figure.axes[0]
             figure.canvas.draw()
             places = [artist.get_window_extent().extents for artist in [*axes.patches, *axes.lines, *axes.collections]]
-            places += [axes.transData.transform(text.xy) for text in axes.texts]
+            places += [axes.transData.transform(text.xy) for text in axes.texts if text.xycoords == "data"]
             drawing = Drawing(tables)
             drawing.obstacles("")
             drawing.boundaries()
