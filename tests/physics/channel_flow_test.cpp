@@ -179,6 +179,8 @@ double largest_rms(const Channel& channel) {
 TEST(ChannelFlow, Slow_WithSmagorinskysModel) {
   Channel channel(24, EddyModel::Smagorinsky, 0.1);
   channel.run(8.0, 10.0);
+  RecordProperty("bulk", std::to_string(channel.bulk()));
+  RecordProperty("largest_rms", std::to_string(largest_rms(channel)));
   EXPECT_NEAR(channel.bulk() / 15.6, 1.0, 0.1);
   EXPECT_NEAR(largest_rms(channel) / 2.66, 1.0, 0.15);
 }
@@ -188,6 +190,7 @@ TEST(ChannelFlow, Slow_WithSmagorinskysModel) {
 TEST(ChannelFlow, Slow_WithAnEddyViscosityThatAdaptsToWalls) {
   Channel channel(24, EddyModel::Wale, 0.1);
   channel.run(8.0, 10.0);
+  RecordProperty("bulk", std::to_string(channel.bulk()));
   EXPECT_NEAR(channel.u(0) / dns(&Line::u, channel.y_plus(0)), 1.0, 0.1);
   EXPECT_NEAR(channel.bulk() / 15.6, 1.0, 0.2);
 }
