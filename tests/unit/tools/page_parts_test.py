@@ -10,15 +10,10 @@ from unittest import mock
 import page_test  # beside this file: an output folder as lbm writes one
 import h5py
 import numpy as np
-<<<<<<< HEAD
 from bplbm import early_end, written
-from bplbm.page import run as page_of_run, sensors
+from bplbm.page import histories, run as page_of_run, sensors
 from bplbm.page.failed import write_failed_page
 from bplbm.page.setup import LEGIBLE
-=======
-from bplbm import early_end
-from bplbm.page import histories, run as page_of_run, sensors
->>>>>>> 30e74ff41c88fc8c73d174f236dda8bce30d6c6b
 from bplbm.results import Run
 from bplbm.scene_words import COLOR
 
@@ -96,7 +91,6 @@ class Sensors(page_test.Output):
         self.assertNotIn("Averages", self.page())
 
 
-<<<<<<< HEAD
 class Written(unittest.TestCase):
     def test_numbers_and_units_read_as_a_person_writes_them(self):
         self.assertEqual([written.error_text(e) for e in (0.0099, -0.5, 1e-6, -1e-6)], ["+0.99 %", "-50.00 %", "0.00 %", "0.00 %"])
@@ -119,12 +113,12 @@ class Parts(page_test.Output):
         text = write_failed_page(self.out, self.scene, [self.scene.file], ["sand"], ["mpirun"], 3).read_text()
         self.assertIn("Only the state at the start was written", text)
         self.assertNotIn("flow-slide", text)
-=======
+
+
 class Names(unittest.TestCase):
     def test_clumps_are_called_as_messages_call_them(self):
         names = [histories.particle_name(number) for number in (7.0, -2.0, -3.0, -1 - 2**32 - 1, -1 - 3 * 2**32 - 12)]
         self.assertEqual(names, ["particle 7", "clump 1", "clump 2", "clump 1 of the 1. fix rigid", "clump 12 of the 3. fix rigid"])
->>>>>>> 30e74ff41c88fc8c73d174f236dda8bce30d6c6b
 
 
 class Repeat(page_test.Output):
