@@ -323,11 +323,16 @@ std::string say_missed_flow(const Summary& s) {
       flow->second, wanted->second);
 }
 
+/// Of a run's time, beyond which the exchange waits for a busy machine and says nothing of the
+/// work.
+constexpr double kBusyExchange = 1.0 / 3.0;
+
 /// What to do about the time that the fluid waits for the solid. In turns one side computes while
 /// the other waits, so that both at once take the time of the longer one.
 std::string hint_of_waiting(const Summary& s) {
   if (!s.time_share.contains("waiting") || s.wall_seconds < 1.0) return "";
   const double waits = s.time_share.at("waiting");
+  if (s.time_share.contains("exchange") && s.time_share.at("exchange") > kBusyExchange) return "";
   if (waits < 0.1)
     return fmt::format(
         "\nhint         the solid keeps the fluid waiting {:.0f} % of its time only: more cores "

@@ -198,7 +198,9 @@ void expect_error(const Scene& s, Plan& plan) {
   const double ratio = s.particles ? std::ranges::min(s.particles->hydraulic_ratio) : 1.0;
   const double cells = ratio * smallest / plan.units.dx;
   std::vector<double> fractions{fraction_known(s)};
-  if (fractions[0] == 0.0) {  // the script brings the particles: a loose bed, and a dense one
+  const bool brought = s.particles && s.coupling && s.particles->start.empty();
+  if (brought ||
+      fractions[0] == 0.0) {  // the script brings the particles: a loose bed, a dense one
     fractions[0] = kLooseBed[d - 2];
     if (plan.kernel.collision == CollisionOperator::Trt)
       fractions.push_back(std::min(kDenseBed[d - 2], kPackedBed[d - 2] * std::pow(ratio, d)));

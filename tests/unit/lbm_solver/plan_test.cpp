@@ -99,6 +99,13 @@ TEST(Plan, TellsTheErrorToExpectOfTheDrag) {
           "drag -0.1 % at a solid fraction of 0.2, -1.7 % at a solid fraction of 0.5 [slow flow"),
       std::string::npos)
       << make_plan(s).expected_error;
+  ObstacleScene post;  // beside them an obstacle, which is not all there will be
+  post.round = true;
+  post.diameter = s.particles->diameter.hi;
+  s.obstacles.push_back(post);
+  EXPECT_NE(make_plan(s).expected_error.find("at a solid fraction of 0.5"), std::string::npos)
+      << make_plan(s).expected_error;
+  s.obstacles.clear();
   s.numerics.cells_per_diameter = 5.0;
   const Plan coarse = make_plan(s);
   ASSERT_FALSE(coarse.warnings.empty());

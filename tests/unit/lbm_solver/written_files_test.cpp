@@ -149,6 +149,9 @@ TEST(Summary, SaysWhatProgramsThatComputeAtOnceWouldSave) {
   expect(0.3, true, "waits 30 % of its time for the solid", true);
   expect(0.3, true, "overlapped", false);
   expect(0.15, false, "hint", false);
+  expect(0.02, false, "more cores go to the fluid", true);
+  s.time_share["exchange"] = 0.84;  // a machine that is busy with other work
+  expect(0.02, false, "hint", false);
 }
 
 TEST(Summary, NamesTheUnitOfEveryNumber) {
