@@ -12,7 +12,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 BIN = pathlib.Path(os.environ.get("BPLBM_BIN", ROOT / "build" / os.environ.get("BPLBM_PRESET", "release") / "bin"))
 ENGINES = ROOT / "tools" / "engines"
-DIAMETER, WIDTH, END = 0.0025, 0.0115625, 0.8  # m, m, s
+DIAMETER, WIDTH, END = 0.0025, 0.0115625, 0.6  # m, m, s
 
 SCENE = f"""title = "packing"
 [box]
