@@ -20,6 +20,7 @@ void fill(hid_t file, const char* name, std::size_t rows) {
   auto table = Table<Row>::create(file, name, kChunk);
   const std::vector<Row> all(rows);
   if (rows) table.append(all);
+  table.flush();
 }
 
 /// Eleven bytes of input are a frame: every field small, so that some of them fit together.
@@ -50,11 +51,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const FrameRow row = row_of(data + at);
       frames.append({&row, 1});
     }
+    frames.flush();
     fill<State>(file, "states", 6);
     fill<Shape>(file, "shapes", 6);
     fill<Load>(file, "loads", 6);
     auto bytes = Table<std::byte>::create(file, "bytes", kChunk);
     bytes.append(std::as_bytes(std::span(data, std::min<std::size_t>(size, 200))));
+    bytes.flush();
     hdf5::set_attribute(file, "trace_version", std::int64_t{2});
     hdf5::set_attribute(file, "recorder", std::string("fluid"));
     hdf5::set_attribute(file, "local_rank", std::int64_t{0});
