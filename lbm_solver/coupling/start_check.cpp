@@ -158,6 +158,7 @@ std::vector<Mover> movers_of(const Scene& s, double time) {
 std::string buried_text(const Scene& s, std::span<const protocol::Particle> particles, double time,
                         const DeepStarts& starts) {
   const std::vector<Mover> movers = movers_of(s, time);
+  if (movers.empty()) return {};
   std::size_t count = 0;
   std::string first;
   for (const protocol::Particle& p : particles) {
