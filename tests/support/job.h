@@ -14,7 +14,7 @@ struct JobResult {
 };
 
 /// Runs a shell command in `folder`.
-/// (The limit is BPLBM_PATIENCE times as long: more than once under sanitizers.)
+/// (The limit is BPLBM_PATIENCE times as long, see tests/CMakeLists.txt.)
 JobResult run(const std::string& command, const std::string& folder, double limit_seconds);
 
 /// A fresh, empty folder of this test; removed when the object dies.

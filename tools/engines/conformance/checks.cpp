@@ -215,9 +215,10 @@ void silence(Judge& judge) {
   scene.timeout = 2.0;
   judge.converse_until(judge.hello(scene), 2);
   try {
-    judge.channel().receive(0, {8.0, "its complaint"});
+    judge.channel().receive(0, {judge.short_patience(), "its complaint"});
   } catch (const Timeout&) {
-    throw Wrong("the scene's coupling_timeout is 2 s, and it still waits after 8 s");
+    throw Wrong(fmt::format("the scene's coupling_timeout is 2 s, and it still waits after {:g} s",
+                            judge.short_patience()));
   }
   throw Wrong("it sent something in place of a complaint");
 }
@@ -229,12 +230,13 @@ std::vector<std::string> shake_hands(Judge& judge, const Answer& mine) {
   Channel& channel = judge.channel();
   const Bytes hello = encode(judge.part(judge.hello({}))), answer = encode(mine);
   const int solids = channel.remote_size();
-  for (int r = 0; r < solids; ++r) channel.send(r, hello, {kPatience, "its mail box"});
-  for (int r = 0; r < solids; ++r) decode<Hello>(channel.receive(r, {kPatience, "its handshake"}));
-  for (int r = 0; r < solids; ++r) channel.send(r, answer, {kPatience, "its mail box"});
+  const double patience = judge.patience();
+  for (int r = 0; r < solids; ++r) channel.send(r, hello, {patience, "its mail box"});
+  for (int r = 0; r < solids; ++r) decode<Hello>(channel.receive(r, {patience, "its handshake"}));
+  for (int r = 0; r < solids; ++r) channel.send(r, answer, {patience, "its mail box"});
   std::vector<std::string> reasons;
   for (int r = 0; r < solids; ++r)
-    for (const auto& reason : decode<Answer>(channel.receive(r, {kPatience, "its answer"})).reasons)
+    for (const auto& reason : decode<Answer>(channel.receive(r, {patience, "its answer"})).reasons)
       reasons.push_back(reason);
   return reasons;
 }
@@ -245,16 +247,16 @@ void fail(Judge& judge) {
   Channel& channel = judge.channel();
   for (int r = 0; r < channel.remote_size(); ++r) {
     const auto states =
-        decode<StateBatch>(channel.receive(r, {kPatience, "the states of interval 0"}));
+        decode<StateBatch>(channel.receive(r, {judge.patience(), "the states of interval 0"}));
     LoadBatch loads{{0, 0.0, kContinue}, {}};
     for (const State& s : states.states) {
       loads.loads.push_back({s.id, {}, {}});
       loads.loads.back().force[0] = std::numeric_limits<double>::quiet_NaN();
     }
-    channel.send(r, encode(loads), {8.0, "its complaint"});
+    channel.send(r, encode(loads), {judge.short_patience(), "its complaint"});
   }
   try {
-    channel.receive(0, {8.0, "its complaint"});
+    channel.receive(0, {judge.short_patience(), "its complaint"});
   } catch (const PeerFault& fault) {
     expect(std::string(fault.what()).find("not finite") != std::string::npos,
            fmt::format("its reason does not say 'not finite': {}", fault.what()));
@@ -298,12 +300,14 @@ void end_refused(Judge& judge) {
 void end_fault(Judge& judge) {
   expect_passes([&] { end(judge); });
   raise(judge);
-  for (int n = 0; n < 80 && !signalled(); ++n) {
+  for (double waited = 0.0; waited < judge.short_patience() && !signalled(); waited += 0.1) {
     sleep_for(0.1);
     int here = 0;
     MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &here, MPI_STATUS_IGNORE);
   }
-  expect(signalled(), "a fault in place of the fluid's farewell: it does not end within 8 s");
+  expect(signalled(),
+         fmt::format("a fault in place of the fluid's farewell: it does not end within {:g} s",
+                     judge.short_patience()));
   throw Aborts{kNumerics};
 }
 

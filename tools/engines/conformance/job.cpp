@@ -65,6 +65,8 @@ std::vector<std::string> command(const Check& check, const JobOptions& options,
                                  check.name,
                                  "--folder",
                                  folder,
+                                 "--patience",
+                                 std::to_string(options.patience),
                                  ":",
                                  "-np",
                                  std::to_string(options.solid_ranks)};

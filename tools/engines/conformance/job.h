@@ -11,7 +11,8 @@ namespace conformance {
 
 struct JobOptions {
   int fluid_ranks = 1, solid_ranks = 1;
-  double timeout = 30.0;  ///< of a check [s]
+  double timeout = 30.0;   ///< of a check [s]
+  double patience = 20.0;  ///< how long the engine may take for an answer [s]
   std::string launcher = "mpirun";
   std::vector<std::string> engine;  ///< command and arguments
 };

@@ -91,8 +91,8 @@ UnionMoments Scene::clump() const {
   return moments_of_union(discs, 2, depth);
 }
 
-Judge::Judge(Channel& channel, MPI_Comm local, std::string folder)
-    : channel_(channel), local_(local), folder_(std::move(folder)) {
+Judge::Judge(Channel& channel, MPI_Comm local, std::string folder, double patience)
+    : channel_(channel), local_(local), folder_(std::move(folder)), patience_(patience) {
   MPI_Comm_rank(local, &rank_);
   MPI_Comm_size(local, &ranks_);
 }
@@ -114,6 +114,7 @@ Hello Judge::hello(const Scene& scene) const {
   h.reach = kReach;
   Offer offer(h.variables);
   offer_box(h, offer);
+  const double timeout = scene.timeout > 0.0 ? scene.timeout : patience_;
   for (const auto& [name, value] : {std::pair{"depth", scene.depth},
                                     {"dimension", 2.0},
                                     {"gravity", 0.0},
@@ -129,7 +130,7 @@ Hello Judge::hello(const Scene& scene) const {
                                     {"density_max", scene.density},
                                     {"contact_stiffness", 1e5},
                                     {"damping_ratio", 0.1},
-                                    {"coupling_timeout", scene.timeout},
+                                    {"coupling_timeout", timeout},
                                     {"restart", 0.0}})
     offer(name, value);
   offer.text("checkpoint", folder_ + "/checkpoint");
@@ -200,7 +201,7 @@ void Judge::converse(const Hello& hello, int intervals, const Loads& load, const
                      std::uint32_t flag_at_two) {
   parts_.clear();
   for (int r = 0; r < ranks_; ++r) parts_.push_back(part_of(hello, r, ranks_));
-  FluidSession session(channel_, parts_[rank_], kPatience);
+  FluidSession session(channel_, parts_[rank_], patience_);
   const Hello& solid = session.agree();
   expect(solid.role == Role::Solid, "its handshake does not say that it is a solid");
   for (int k = 0;; ++k) {
@@ -244,7 +245,7 @@ void Judge::converse_until(const Hello& hello, int interval) {
 }
 
 void Judge::expect_farewell(const std::string& after) const {
-  constexpr double seconds = 6.0;
+  const double seconds = 0.3 * patience_;
   const Ending ending = channel_.await_farewell(seconds);
   if (ending.fault) throw PeerFault(*ending.fault);
   expect(ending.missing.empty(),

@@ -21,7 +21,6 @@ namespace conformance {
 
 inline constexpr double kInterval = 1e-2;  ///< [s]
 inline constexpr double kRadius = 0.05;    ///< [m]
-inline constexpr double kPatience = 20.0;  ///< with an engine that must answer [s]
 
 /// What an engine has done wrong.
 struct Wrong : std::runtime_error {
@@ -56,7 +55,7 @@ struct Scene {
   bool periodic = false;
   double density = 1000.0;  ///< [kg/m³]
   double depth = 1.0;       ///< [m]
-  double timeout = 20.0;    ///< that is offered to the engine [s]
+  double timeout = 0.0;     ///< that is offered to the engine [s]; 0: the judge's own patience
   double mass() const;      ///< of a disc [kg]
   double inertia() const { return 0.5 * mass() * kRadius * kRadius; }
   protocol::UnionMoments clump() const;  ///< what the discs of a clump fill together
@@ -64,8 +63,9 @@ struct Scene {
 
 class Judge {
  public:
-  /// @param folder  for what the engine writes
-  Judge(protocol::Channel& channel, MPI_Comm local, std::string folder);
+  /// @param folder    for what the engine writes
+  /// @param patience  how long the engine may take for an answer [s]
+  Judge(protocol::Channel& channel, MPI_Comm local, std::string folder, double patience);
 
   /// The handshake for a scene, and the part of it of this rank.
   protocol::Hello hello(const Scene& scene) const;
@@ -83,7 +83,7 @@ class Judge {
   /// Agrees and answers loads of zero until the states of an interval have come.
   void converse_until(const protocol::Hello& hello, int interval);
 
-  /// Every rank of the engine must say it within some seconds.
+  /// Every rank of the engine must say it within 0.3 of the patience.
   void expect_farewell(const std::string& after) const;
 
   /// Called before the loads of an interval are answered, e.g. to be slow.
@@ -91,6 +91,9 @@ class Judge {
 
   protocol::Channel& channel() const { return channel_; }
   int rank() const { return rank_; }
+  double patience() const { return patience_; }
+  /// For a complaint that the engine should have at once [s].
+  double short_patience() const { return 0.4 * patience_; }
 
  private:
   std::vector<protocol::Particle> together(const std::vector<protocol::Particle>& mine) const;
@@ -99,6 +102,7 @@ class Judge {
   protocol::Channel& channel_;
   MPI_Comm local_;
   std::string folder_;
+  double patience_;
   int rank_ = 0, ranks_ = 1;
   std::vector<protocol::Hello> parts_;  // [fluid rank], of the scene in progress
 };

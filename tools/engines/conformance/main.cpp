@@ -22,7 +22,7 @@ using namespace protocol;
 const std::string kProgram = "bplbm-conformance";
 
 /// This program as the fluid of a job.
-int judge(const std::string& name, const std::string& folder) {
+int judge(const std::string& name, const std::string& folder, double patience) {
   MPI_Init(nullptr, nullptr);
   catch_signals();
   std::unique_ptr<Channel> channel;
@@ -33,7 +33,7 @@ int judge(const std::string& name, const std::string& folder) {
     world = connect(Role::Fluid);
     MPI_Comm_rank(world.local, &rank);
     channel = make_mpi_channel(world, Role::Fluid);
-    Judge it(*channel, world.local, folder);
+    Judge it(*channel, world.local, folder, patience);
     check.run(it);
     write_verdict(folder, rank, check.exit_code ? "it was not refused" : "ok");
   } catch (const Aborts& done) {
@@ -114,6 +114,8 @@ int start(int argc, char** argv) {
   app.add_option("--solid-ranks", options.solid_ranks, "ranks of the engine")
       ->check(CLI::Range(1, 64));
   app.add_option("--timeout", options.timeout, "of one check [s]")->check(finite_number(0.0));
+  app.add_option("--patience", options.patience, "how long the engine may take for an answer [s]")
+      ->check(finite_number(0.0));
   app.add_option("--jobs", jobs, "checks at a time")->check(CLI::Range(1, 64));
   app.add_option("--launcher", options.launcher, "the command mpirun");
   if (const auto code = read_command_line(app, kProgram, static_cast<int>(dashes - argv), argv))
@@ -142,8 +144,8 @@ int start(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() == 4 && words[0] == "--judge" && find(words[1]))
-    return judge(words[1], words[3]);
+  if (words.size() == 6 && words[0] == "--judge" && find(words[1]))
+    return judge(words[1], words[3], std::stod(words[5]));
   try {
     return start(argc, argv);
   } catch (const std::exception& error) {
