@@ -16,10 +16,11 @@ def passed(run):
         clumps = table["id"] < -1
         table = {name: column[clumps] for name, column in table.items()}
     times = np.unique(table["time"])
-    first = table["time"] == times[0]
-    count = np.count_nonzero(first)
-    still_above = [np.count_nonzero(table["z"][table["time"] == t] > BELOW) for t in times]
-    return count, times, count - np.array(still_above)
+    count = np.count_nonzero(table["time"] == times[0])
+    under = table["z"] < BELOW  # seen there, so a grain that leaves by another way does not count
+    ids, at = np.unique(table["id"][under], return_index=True)
+    arrivals = table["time"][under][at] if len(ids) else np.array([])
+    return count, times, np.array([np.count_nonzero(arrivals <= t) for t in times])
 
 
 def main():
