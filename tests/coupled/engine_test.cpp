@@ -146,6 +146,9 @@ TEST(Judge, AnswersMistakesOfItsCommandLine) {
   test::expect_end(run("stop --launcher no_mpirun -- true"), 1, {"no_mpirun not found"});
   test::expect_end(run("stop --timeout 2 -- sleep 60"), 1, {"does not end within 2 s"});
   test::expect_end(run("stop --timeout 2 -- true"), 1, {"0 of 1 checks passed"});
+  test::expect_end(run("silence --patience 10 -- " + kPython +
+                       BPLBM_SOURCE_DIR "/tests/support/bad_engine.py too_patient"),
+                   1, {"it still waits after 4 s"});
 }
 
 // As FixTest has it for LIGGGHTS: deleting the first disc gives its id to the second.
