@@ -143,14 +143,15 @@ double critical_yield_number(int dimension, double diameter, int box,
 }
 
 // The layer that yields beside the body becomes thinner than a cell, which the lattice makes
-// stiffer than it is.
+// stiffer than it is: the numbers come from below.
 TEST(YieldNumber, OfADiscIsThatOfPlasticityTheory) {
   // F = (4 √2 + 2 π) σ_y D on a rough disc [RandolphHoulsby1984]
   const double limit = pi / 4.0 / (4.0 * std::sqrt(2.0) + 2.0 * pi);
   for (const double diameter : {10.0, 20.0}) {
     const double number = critical_yield_number(2, diameter, 5 * static_cast<int>(diameter));
     RecordProperty("number" + std::to_string(static_cast<int>(diameter)), std::to_string(number));
-    EXPECT_NEAR(number / limit, 1.0, 0.1) << diameter;
+    EXPECT_GE(number / limit, 0.9) << diameter;
+    EXPECT_LE(number / limit, 1.0) << diameter;
   }
 }
 
@@ -161,16 +162,18 @@ TEST(YieldNumber, OfASphereIsThatOfTheVariationalSolution) {
   for (const Vec3& off : {Vec3(0.137, -0.211, 0.31), Vec3(-0.4, 0.1, 0.25), Vec3(0.3, 0.45, -0.15)})
     mean += critical_yield_number(3, 10.0, 32, off) / 3.0;
   RecordProperty("number", std::to_string(mean));
-  EXPECT_NEAR(mean / 0.0460, 1.0, 0.12);  // of first order in the cell: 1.1 cells over D
+  EXPECT_GE(mean / 0.0460, 0.88);  // of first order in the cell: 1.1 cells over D
+  EXPECT_LE(mean / 0.0460, 1.0);
 }
 
 TEST(YieldNumber, Slow_OfASphereIsThatOfBeris) {
   for (const auto& [diameter, box] : {std::pair{14.0, 44}, {20.0, 56}}) {
     const double number = critical_yield_number(3, diameter, box);
     RecordProperty("number" + std::to_string(static_cast<int>(diameter)), std::to_string(number));
-    EXPECT_NEAR(number / 0.0460, 1.0, 1.2 / diameter) << diameter;
+    EXPECT_GE(number / 0.0460, 1.0 - 1.2 / diameter) << diameter;
+    EXPECT_LE(number / 0.0460, 1.0) << diameter;
     if (diameter >= 20.0) {
-      EXPECT_NEAR(number / (0.143 / 3.0), 1.0, 0.1) << diameter;
+      EXPECT_GE(number / (0.143 / 3.0), 0.9);
     }
   }
 }
