@@ -58,12 +58,18 @@ class SinglePack {
   [[gnu::always_inline]] friend SinglePack sqrt(const SinglePack& a) {
     return std::experimental::sqrt(a.lanes_);
   }
+  [[gnu::always_inline]] friend SinglePack min(const SinglePack& a, const SinglePack& b) {
+    return std::experimental::min(a.lanes_, b.lanes_);
+  }
+  [[gnu::always_inline]] friend mask_type operator>=(const SinglePack& a, const SinglePack& b) {
+    return a.lanes_ >= b.lanes_;
+  }
 
  private:
   Lanes lanes_;
 };
 
-/// The pack that pure fluid is swept with where populations are stored as `Real`.
+/// The pack that cells are swept with where populations are stored as `Real`.
 template <class Real>
 using PackOf = std::conditional_t<std::is_same_v<Real, float>, SinglePack, Pack>;
 
@@ -115,41 +121,6 @@ template <class... Packs>
 #endif
 }
 
-/// Four numbers, of which each lane of a pack takes one.
-class alignas(64) LaneChoice {
- public:
-  LaneChoice() = default;
-  LaneChoice(double zero, double one, double two, double three) : at_{zero, one, two, three} {}
-
-#if defined(__AVX512DQ__)
-  using Which = __m512i;
-  /// By whole numbers 0 … 3; from each lane of v the fraction is cut off.
-  [[gnu::always_inline]] static Which which(const Pack& v) {
-    return _mm512_cvttpd_epi64(static_cast<__m512d>(v));
-  }
-  [[gnu::always_inline]] Pack operator()(const Which& which) const {
-    return Pack(_mm512_permutexvar_pd(which, _mm512_load_pd(at_)));
-  }
-#else
-  struct Which {
-    Pack::mask_type one, two, three;
-  };
-  [[gnu::always_inline]] static Which which(const Pack& v) {
-    return {v >= Pack(1.0), v >= Pack(2.0), v >= Pack(3.0)};
-  }
-  [[gnu::always_inline]] Pack operator()(const Which& which) const {
-    Pack value(at_[0]);
-    where(which.one, value) = Pack(at_[1]);
-    where(which.two, value) = Pack(at_[2]);
-    where(which.three, value) = Pack(at_[3]);
-    return value;
-  }
-#endif
-
- private:
-  double at_[8] = {};
-};
-
 /// The SIMD lanes of a pack.
 [[gnu::always_inline]] inline Pack& lanes_of(Pack& v) {
   return v;
@@ -163,6 +134,99 @@ class alignas(64) LaneChoice {
 [[gnu::always_inline]] inline const SinglePack::Lanes& lanes_of(const SinglePack& v) {
   return v.lanes();
 }
+
+/// In each lane `yes` where the mask is set, `no` elsewhere.
+template <class V>
+[[gnu::always_inline]] inline V select(const typename V::mask_type& which, const V& yes,
+                                       const V& no) {
+  V value = no;
+  where(which, lanes_of(value)) = lanes_of(yes);
+  return value;
+}
+
+/// Four numbers, of which each lane of a pack takes one.
+class alignas(64) LaneChoice {
+ public:
+  LaneChoice() = default;
+  LaneChoice(double zero, double one, double two, double three)
+      : at_{zero, one, two, three}, singles_{float(zero), float(one), float(two), float(three)} {}
+
+  template <class V>
+  struct Which {
+    typename V::mask_type one, two, three;
+  };
+  /// By whole numbers 0 … 3; from each lane of v the fraction is cut off.
+  template <class V>
+  [[gnu::always_inline]] static Which<V> which(const V& v) {
+    return {v >= V(1.0), v >= V(2.0), v >= V(3.0)};
+  }
+  template <class V>
+  [[gnu::always_inline]] V operator()(const Which<V>& which) const {
+    const V below_two = select(which.one, at<V>(1), at<V>(0));
+    return select(which.three, at<V>(3), select(which.two, at<V>(2), below_two));
+  }
+
+#if defined(__AVX512DQ__)
+  [[gnu::always_inline]] static __m512i which(const Pack& v) {
+    return _mm512_cvttpd_epi64(static_cast<__m512d>(v));
+  }
+  [[gnu::always_inline]] Pack operator()(const __m512i& which) const {
+    return Pack(_mm512_permutexvar_pd(which, _mm512_load_pd(at_)));
+  }
+#endif
+
+ private:
+  template <class V>
+  [[gnu::always_inline]] V at(int k) const {
+    if constexpr (std::is_same_v<V, SinglePack>)
+      return SinglePack::Lanes(singles_[k]);
+    else
+      return V(at_[k]);
+  }
+
+#if defined(__AVX512DQ__)
+  double at_[8] = {};  // a whole pack
+#else
+  double at_[4] = {};
+#endif
+  float singles_[4] = {};
+};
+
+/// The lanes of two packs of doubles as one of floats, and back.
+class JoinedPacks {
+  static constexpr std::size_t n = Pack::size();
+  static_assert(SinglePack::size() == 2 * n);
+  using Doubles [[gnu::vector_size(sizeof(Pack))]] = double;
+  using Floats [[gnu::vector_size(sizeof(Pack))]] = float;
+  using Half [[gnu::vector_size(sizeof(Pack) / 2)]] = float;
+
+ public:
+  [[gnu::always_inline]] static SinglePack join(const Pack& low, const Pack& high) {
+    return join(std::make_index_sequence<2 * n>(), floats(low), floats(high));
+  }
+  [[gnu::always_inline]] static Pack low(const SinglePack& v) {
+    return part<0>(std::make_index_sequence<n>(), v);
+  }
+  [[gnu::always_inline]] static Pack high(const SinglePack& v) {
+    return part<n>(std::make_index_sequence<n>(), v);
+  }
+
+ private:
+  [[gnu::always_inline]] static Half floats(const Pack& v) {
+    return __builtin_convertvector(static_cast<Doubles>(v), Half);
+  }
+  template <std::size_t... i>
+  [[gnu::always_inline]] static SinglePack join(std::index_sequence<i...>, const Half& low,
+                                                const Half& high) {
+    return SinglePack::Lanes(Floats(__builtin_shufflevector(low, high, i...)));
+  }
+  template <std::size_t first, std::size_t... i>
+  [[gnu::always_inline]] static Pack part(std::index_sequence<i...>, const SinglePack& v) {
+    const Floats all = static_cast<Floats>(v.lanes());
+    const Half half = __builtin_shufflevector(all, all, (first + i)...);
+    return Pack(__builtin_convertvector(half, Doubles));
+  }
+};
 
 /// Access to all lanes of a pack. Memory may be of the other precision.
 template <class V>

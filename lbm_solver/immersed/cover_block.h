@@ -45,8 +45,9 @@ inline constexpr double kCore = cover_of(CoverKind::Core), kWall = cover_of(Cove
 inline constexpr double kWhole = 1.0 - 1e-12;
 
 /// The kinds of a pack of covered cells, by which a LaneChoice chooses.
-[[gnu::always_inline]] inline LaneChoice::Which kinds_of(const Pack& cover) {
-  return LaneChoice::which(cover + Pack(cover_of(CoverKind::Whole) - kWhole));
+template <class V>
+[[gnu::always_inline]] inline auto kinds_of(const V& cover) {
+  return LaneChoice::which(cover + V(cover_of(CoverKind::Whole) - kWhole));
 }
 
 /// Solid fraction of cells, of what a block or several together have in `cover`.

@@ -6,7 +6,7 @@
 namespace lbm {
 
 ResistanceCollision::ResistanceCollision(SolidTerm term, const CollisionParameters& parameters)
-    : tau_(parameters.tau), mu_zero_(2.0 - 16.0 / 3.0 * parameters.magic) {
+    : tau_(parameters.tau), rate_(1.0 / tau_), mu_zero_(2.0 - 16.0 / 3.0 * parameters.magic) {
   const SolidTermRows rows = solid_term_rows(term, parameters.tau);
   const auto choice = [&](auto&& of) {
     return LaneChoice(of(rows.surface), of(rows.whole), of(rows.core), of(rows.wall));

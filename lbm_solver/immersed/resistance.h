@@ -94,23 +94,25 @@ class ResistanceCollision {
   /// @param f        populations [q] that arrived; overwritten
   /// @param collide  TRT of pure fluid
   /// @return the force on the solid, lattice units
-  template <class L, class Collision>
-  [[gnu::always_inline]] Vector<L, Pack> apply(Pack (&f)[L::Q], const Collision& collide,
-                                               const CoveredCell<L>& cell) const {
-    using V = Pack;
+  template <class L, class V, class Collision>
+  [[gnu::always_inline]] Vector<L, V> apply(V (&f)[L::Q], const Collision& collide,
+                                            const CoveredCell<L, V>& cell) const {
     const Moments<L, V> m = moments<L>(f);
     const V rho = m.drho + V(1.0);
     const V eps = fraction_of(cell.cover);
-    V tau(tau_);
-    if constexpr (Collision::local_viscosity)
-      tau = collide.relaxation_time(f, m, V(1.0) - eps, cell.eddies);
+    V s(tau_ - 0.5), rate(rate_);
+    if constexpr (Collision::local_viscosity) {
+      const V tau = collide.relaxation_time(f, m, V(1.0) - eps, cell.eddies);
+      s = tau - V(0.5);
+      rate = V(1.0) / tau;
+    }
     const auto kind = kinds_of(cell.cover);
     const auto whole = eps >= V(kWhole);
-    OddExchange<V> odd = surface_exchange<L, V>(eps, tau - V(0.5), V(mu_zero_));
-    where(whole, odd.momentum) = momentum_(kind);
-    where(whole, odd.cross) = V(0.0);
-    where(whole, odd.ghost) = ghost_(kind);
-    where(whole, odd.others) = ghost_(kind);
+    OddExchange<V> odd = surface_exchange<L, V>(eps, s, V(mu_zero_));
+    odd.momentum = select(whole, momentum_(kind), odd.momentum);
+    odd.cross = select(whole, V(0.0), odd.cross);
+    odd.ghost = select(whole, ghost_(kind), odd.ghost);
+    odd.others = select(whole, ghost_(kind), odd.others);
 
     Vector<L, V> force, all, other, half_way;  // all: along the axes; other: in other directions
     unroll<L::D>([&](auto a) __attribute__((always_inline)) {
@@ -130,11 +132,10 @@ class ResistanceCollision {
       all[a] = p + q;
       other[a] = p - V(r2) * q;
       // the equilibrium of whole cells is that of what arrived, as in Noble and Torczynski's
-      half_way[a] = driven - V(0.5) * force[a];
-      where(whole, half_way[a]) = m.j[a];
+      half_way[a] = select(whole, m.j[a], driven - V(0.5) * force[a]);
     });
 
-    const V even_rate = select(whole, even_(kind), V(1.0) / tau);
+    const V even_rate = select(whole, even_(kind), rate);
     const V at_fluid = select(whole, even_at_fluid_(kind), even_rate);
     const V at_solid = select(whole, even_at_solid_(kind), V(0.0));
     const V inverse = V(1.0) / rho;
@@ -160,14 +161,7 @@ class ResistanceCollision {
   }
 
  private:
-  template <class Mask>
-  [[gnu::always_inline]] static Pack select(const Mask& which, const Pack& yes, const Pack& no) {
-    Pack value = no;
-    where(which, value) = yes;
-    return value;
-  }
-
-  double tau_, mu_zero_;
+  double tau_, rate_, mu_zero_;
   // Of cells covered whole, in a core, in a wall: exchange of momentum and ghosts, what becomes of
   // the even half, 1 - even, and of the equilibria of the fluid's and the solid's velocity.
   LaneChoice momentum_, ghost_, even_, even_at_fluid_, even_at_solid_;

@@ -28,7 +28,7 @@ class SolidShare {
   template <class L, class V>
   V of(const V& cover, const V& tau) const {
     const V eps = fraction_of(cover);
-    V share = by_resistance_ ? V(0.5) * exchange<L>(eps, tau).momentum : weight_(eps, tau);
+    V share = by_resistance_ ? V(0.5) * exchange<L>(eps, tau).momentum : weight_(eps, tau - V(0.5));
     where(eps >= V(kWhole), share) = V(1.0);
     return share;
   }

@@ -37,11 +37,11 @@ SolidTermRows solid_term_rows(SolidTerm term, double tau);
 bool by_resistance(SolidTerm term);
 
 /// What the cover map knows of a cell.
-template <class L>
+template <class L, class V>
 struct CoveredCell {
-  Pack cover;               ///< as in CoverBlock
-  Vector<L, Pack> us;       ///< solid velocity at the cell centre, lattice units
-  Pack eddies = Pack(1.0);  ///< share of the eddy viscosity (EddyField)
+  V cover;            ///< as in CoverBlock
+  Vector<L, V> us;    ///< solid velocity at the cell centre, lattice units
+  V eddies = V(1.0);  ///< share of the eddy viscosity (EddyField)
 };
 
 /// f_i^eq(rho, u) times one factor plus f_i^eq(rho, u_s) times another, as halves of pairs, for the
@@ -113,17 +113,16 @@ class CoveredCollision {
   /// @param f        populations [q] that arrived; overwritten
   /// @param collide  the operator of pure fluid
   /// @return the force on the solid, lattice units
-  template <class L, class Collision>
-  [[gnu::always_inline]] Vector<L, Pack> apply(Pack (&f)[L::Q], const Collision& collide,
-                                               const CoveredCell<L>& cell) const {
-    using V = Pack;
+  template <class L, class V, class Collision>
+  [[gnu::always_inline]] Vector<L, V> apply(V (&f)[L::Q], const Collision& collide,
+                                            const CoveredCell<L, V>& cell) const {
     const Moments<L, V> m = moments<L>(f);
     const Vector<L, V> u = velocity<L>(m, NoForce<L>({}));
-    V tau(weight_.tau);
+    V s(weight_.tau - 0.5);
     const V eps = fraction_of(cell.cover);
     if constexpr (Collision::local_viscosity)
-      tau = collide.relaxation_time(f, m, V(1.0) - eps, cell.eddies);
-    const V weight = weight_(eps, tau);
+      s = collide.relaxation_time(f, m, V(1.0) - eps, cell.eddies) - V(0.5);
+    const V weight = weight_(eps, s);
     const auto kind = kinds_of(cell.cover);
     const auto of = [&](const Factor& factor) __attribute__((always_inline)) {
       return V(factor.fluid) + weight * factor.solid_less_fluid(kind);

@@ -19,10 +19,9 @@ class ImmersedWeight {
         constant_(rule == WeightRule::Fraction ? 0.0 : 1.0),
         slope_(rule == WeightRule::Balanced ? 0.5 : 0.0) {}
 
-  /// B of a solid fraction of at most 1, where the viscosity has the relaxation time tau.
+  /// B of a solid fraction of at most 1, where the viscosity has the relaxation time s + 1/2.
   template <class V>
-  [[gnu::always_inline]] V operator()(const V& eps, const V& tau) const {
-    const V s = tau - V(0.5);
+  [[gnu::always_inline]] V operator()(const V& eps, const V& s) const {
     return eps * s / ((V(1.0) - eps) * (V(constant_) - V(slope_) * s) + s);
   }
 

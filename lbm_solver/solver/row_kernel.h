@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <stdexcept>
 
@@ -69,14 +70,18 @@ class CoverPrefetch {
 };
 
 /// The sweep of one lattice, precision and collision: every row through the same few lines, a pack
-/// of cells at a time, the rest of a row with the same source behind a mask. Covered cells collide
-/// in double precision whatever the populations are stored in.
+/// of cells at a time, the rest of a row with the same source behind a mask. Covered cells of a
+/// viscosity that depends on the shear rate collide in double precision whatever the populations
+/// are stored in: the fourth powers of the stress there are beyond floats. Forces on solids are
+/// always summed in double precision.
 template <class Collision, class Real>
 class RowKernel final : public Kernel {
   using L = typename Collision::Set;
   using V = PackOf<Real>;
   using Row = EsotericPull::Row<L, Real>;
-  static constexpr int kWidth = V::size();
+  using Covered = std::conditional_t<Collision::local_viscosity, Pack, V>;  // pack of covered cells
+  static constexpr int kWidth = V::size(), kCoveredWidth = Covered::size();
+  static constexpr int kBlocks = kCoveredWidth / kPackWidth;  // of the cover map in such a pack
 
  public:
   explicit RowKernel(const KernelChoice& c) : collide_(c.parameters) {
@@ -118,6 +123,13 @@ class RowKernel final : public Kernel {
     Row populations;
     const float* eddies;  ///< of an EddyField; null: none
   };
+  using Blocks = std::array<CoverBlock*, kBlocks>;  // null: pure fluid, but for the first
+
+  /// What solids that share a block have of it.
+  struct Shares {
+    bool shared;
+    Pack scale;  ///< see CoverMap::Shared
+  };
 
   /// Pure fluid from cell x to cell end.
   [[gnu::always_inline]] void sweep_run(const CellRow& row, int x, int end,
@@ -142,13 +154,15 @@ class RowKernel final : public Kernel {
       if (next == blocks) return;
       const int x = next * kPackWidth;
       if constexpr (L::D == 3) prefetch.fetch(L::Q + 3);
-      ahead.fetch(next);
-      CoverBlock& block = *cover.row(y, z)[next];
-      if (x + kPackWidth <= n)
-        covered(row, x, cover, block, AllLanes<Pack>());
+      const int end = std::min(next + kBlocks, blocks);
+      ahead.fetch(end - 1);
+      Blocks found = {};
+      std::copy(cover.row(y, z) + next, cover.row(y, z) + end, found.begin());
+      if (x + kCoveredWidth <= n)
+        covered(row, x, cover, found, AllLanes<Covered>());
       else
-        covered(row, x, cover, block, FirstLanes<Pack>(n - x));
-      b = next + 1;
+        covered(row, x, cover, found, FirstLanes<Covered>(n - x));
+      b = next + kBlocks;
     }
   }
 
@@ -165,39 +179,73 @@ class RowKernel final : public Kernel {
 
   template <class Access>
   [[gnu::always_inline]] void covered(const CellRow& row, int x, const CoverMap& cover,
-                                      CoverBlock& block, const Access& lanes) const {
+                                      Blocks blocks, const Access& lanes) const {
     if constexpr (Collision::fixed_magic)
-      if (resistance_) return covered(*resistance_, row, x, cover, block, lanes);
-    covered(*covered_, row, x, cover, block, lanes);
+      if (resistance_) return covered(*resistance_, row, x, cover, blocks, lanes);
+    covered(*covered_, row, x, cover, blocks, lanes);
   }
 
   template <class SolidCollision, class Access>
   [[gnu::noinline]] void covered(const SolidCollision& solid, const CellRow& row, int x,
-                                 const CoverMap& cover, CoverBlock& block,
-                                 const Access& lanes) const {
-    CoveredCell<L> cell;
-    Pack scale;
-    const bool shared = block.next;
-    if (shared) [[unlikely]] {
+                                 const CoverMap& cover, Blocks blocks, const Access& lanes) const {
+    CoveredCell<L, Covered> cell;
+    Shares shares[kBlocks];
+    if constexpr (kBlocks == 1) {
+      shares[0] = find_cover(cover, *blocks[0], cell);
+    } else {
+      CoveredCell<L, Pack> low, high = {Pack(0.0), {}};
+      unroll<L::D>([&](auto a) __attribute__((always_inline)) { high.us[a] = Pack(0.0); });
+      shares[0] = find_cover(cover, *blocks[0], low);
+      if (blocks[1]) shares[1] = find_cover(cover, *blocks[1], high);
+      cell.cover = JoinedPacks::join(low.cover, high.cover);
+      unroll<L::D>([&](auto a) __attribute__((always_inline)) {
+        cell.us[a] = JoinedPacks::join(low.us[a], high.us[a]);
+      });
+    }
+    const Row& at = row.populations;
+    Covered f[L::Q];
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(at.in[q] + x); });
+    if constexpr (Collision::local_viscosity)
+      if (row.eddies) cell.eddies = lanes.load(row.eddies + x);
+    const Vector<L, Covered> force = solid.template apply<L>(f, collide_, cell);
+    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(at.out[q] + x, f[q]); });
+    if constexpr (kBlocks == 1) {
+      keep(cover, *blocks[0], shares[0], force.at);
+    } else {
+      Pack low[L::D], high[L::D];
+      unroll<L::D>([&](auto a) __attribute__((always_inline)) {
+        low[a] = JoinedPacks::low(force[a]);
+        high[a] = JoinedPacks::high(force[a]);
+      });
+      keep(cover, *blocks[0], shares[0], low);
+      if (blocks[1]) keep(cover, *blocks[1], shares[1], high);
+    }
+  }
+
+  /// Writes what covers the cells of a block.
+  [[gnu::always_inline]] static Shares find_cover(const CoverMap& cover, const CoverBlock& block,
+                                                  CoveredCell<L, Pack>& cell) {
+    Shares shares;
+    shares.shared = block.next;
+    if (shares.shared) [[unlikely]] {
       const auto all = cover.merge<L::D>(block);
-      scale = all.scale;
+      shares.scale = all.scale;
       cell.cover = all.cover;
       std::copy_n(all.u, L::D, cell.us.at);
     } else {
       cell.cover = load<Pack>(block.cover.data());
       velocity_in<L::D>(block, cover.motion(block), cell.us.at);
     }
-    const Row& at = row.populations;
-    Pack f[L::Q];
-    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { f[q] = lanes.load(at.in[q] + x); });
-    if constexpr (Collision::local_viscosity)
-      if (row.eddies) cell.eddies = lanes.load(row.eddies + x);
-    const Vector<L, Pack> force = solid.template apply<L>(f, collide_, cell);
-    unroll<L::Q>([&](auto q) __attribute__((always_inline)) { lanes.store(at.out[q] + x, f[q]); });
-    if (shared) [[unlikely]]
-      cover.split<L::D>(block, scale, force.at);
+    return shares;
+  }
+
+  /// Gives the solids of a block the force on them.
+  [[gnu::always_inline]] static void keep(const CoverMap& cover, CoverBlock& block,
+                                          const Shares& shares, const Pack (&force)[L::D]) {
+    if (shares.shared) [[unlikely]]
+      cover.split<L::D>(block, shares.scale, force);
     else
-      keep_force<L::D>(block, force.at);
+      keep_force<L::D>(block, force);
   }
 
   Collision collide_;

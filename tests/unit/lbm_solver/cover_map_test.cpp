@@ -44,10 +44,10 @@ Fluid stirred(std::vector<Body> discs) {
 
 TEST(ImmersedWeight, HasItsLimits) {
   const ImmersedWeight viscous(WeightRule::Viscous), fraction(WeightRule::Fraction);
-  EXPECT_EQ(viscous(0.0, 0.8), 0.0);
-  EXPECT_EQ(viscous(1.0, 0.8), 1.0);
-  EXPECT_NEAR(viscous(0.5, 0.8), 0.5 * 0.3 / 0.8, 1e-15);
-  EXPECT_NEAR(fraction(0.3, 0.8), 0.3, 1e-16);
+  EXPECT_EQ(viscous(0.0, 0.3), 0.0);
+  EXPECT_EQ(viscous(1.0, 0.3), 1.0);
+  EXPECT_NEAR(viscous(0.5, 0.3), 0.5 * 0.3 / 0.8, 1e-15);
+  EXPECT_NEAR(fraction(0.3, 0.3), 0.3, 1e-16);
 }
 
 TEST(CoverMap, SolidsThatShareACellAreOneThereAndAWallIsAWall) {

@@ -76,4 +76,34 @@ TEST(Packs, FirstLanesReadAndWriteNothingBeyond) {
   expect_first_lanes<SinglePack, float>();
 }
 
+TEST(Packs, TwoOfDoublesAreOneOfFloatsAndBack) {
+  const Pack low([](auto lane) { return lane + 0.25; });
+  const Pack high([](auto lane) { return -16.0 * lane; });
+  const SinglePack both = JoinedPacks::join(low, high);
+  for (int lane = 0; lane < kPackWidth; ++lane) {
+    EXPECT_EQ(both.lanes()[lane], lane + 0.25f);
+    EXPECT_EQ(both.lanes()[kPackWidth + lane], -16.0f * static_cast<float>(lane));
+    EXPECT_EQ(JoinedPacks::low(both)[lane], low[lane]);
+    EXPECT_EQ(JoinedPacks::high(both)[lane], high[lane]);
+  }
+}
+
+/// Each lane has one of four numbers by what it holds, whose fraction is cut off.
+template <class V>
+void expect_choice() {
+  constexpr int width = std::remove_cvref_t<decltype(lanes_of(std::declval<V&>()))>::size();
+  using Number = typename V::value_type;
+  const LaneChoice choice(0.5, 1.5, 2.5, 3.5);
+  std::vector<Number> by(width), chosen(width);
+  for (int i = 0; i < width; ++i) by[i] = Number(i % 4) + Number(i % 2) * Number(0.5);
+  const V which = AllLanes<V>().load(by.data());
+  AllLanes<V>().store(chosen.data(), choice(LaneChoice::which(which)));
+  for (int i = 0; i < width; ++i) EXPECT_EQ(chosen[i], Number(i % 4) + Number(0.5)) << i;
+}
+
+TEST(Packs, EachLaneChoosesOneOfFourNumbers) {
+  expect_choice<Pack>();
+  expect_choice<SinglePack>();
+}
+
 }  // namespace
