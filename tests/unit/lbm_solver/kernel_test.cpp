@@ -199,11 +199,7 @@ std::vector<Domain> domains_of(const KernelChoice& c) {
           all.push_back({nx, ny, x, y});
         continue;
       }
-      for (const Side z : sides) {
-        // half of the boxes for floats: their sides are those of doubles
-        if (c.precision == Precision::Single && (x == y) != (z == Side::Wall)) continue;
-        all.push_back({19, 8, x, y, 7, z});
-      }
+      for (const Side z : sides) all.push_back({19, 8, x, y, 7, z});
     }
   return all;
 }
