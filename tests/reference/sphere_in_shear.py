@@ -9,7 +9,7 @@ The force is what the residual does on the sphere's own velocity. In a Newtonian
 (1-λ⁵)/(1 - 9λ/4 + 5λ³/2 - 9λ⁵/4 + λ⁶), λ the ratio of the radii [Happel and Brenner 1965], which is printed beside it.
 
 Usage: sphere_in_shear.py [RADIUS [ELEMENTS DEGREE]] (of the hollow sphere, 8; 16 elements, harmonics up to 8; needs numpy and
-scipy; ten minutes, 1 GB)
+scipy; five minutes)
 """
 
 import sys
