@@ -7,10 +7,10 @@ namespace lbm {
 template <class L, class Viscosity, class Force>
 using Bgk = TwoRates<L, EqualRates, Viscosity, Force>;
 
-template <class L>
+template <class L, class Real>
 KernelRows bgk_rows() {
-  return rows_of<Bgk, L>(CollisionOperator::Bgk);
+  return rows_of<Bgk, L, Real>(CollisionOperator::Bgk);
 }
-template KernelRows bgk_rows<BPLBM_LATTICE>();
+template KernelRows bgk_rows<BPLBM_LATTICE, BPLBM_REAL>();
 
 }  // namespace lbm

@@ -4,10 +4,10 @@
 
 namespace lbm {
 
-template <class L>
+template <class L, class Real>
 KernelRows central_moment_rows() {
-  return rows_of<CentralMoments, L>(CollisionOperator::CentralMoment);
+  return rows_of<CentralMoments, L, Real>(CollisionOperator::CentralMoment);
 }
-template KernelRows central_moment_rows<BPLBM_LATTICE>();
+template KernelRows central_moment_rows<BPLBM_LATTICE, BPLBM_REAL>();
 
 }  // namespace lbm

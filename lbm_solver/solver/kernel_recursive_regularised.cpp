@@ -6,12 +6,11 @@ namespace lbm {
 
 /// In double precision only: it is the slowest to compile, and central moments serve the same
 /// flows.
-template <class L>
+template <class L, class Real>
 KernelRows recursive_regularised_rows() {
-  KernelRows rows;
-  add_precision<RecursiveRegularised, L, double>(rows, CollisionOperator::RecursiveRegularised);
-  return rows;
+  if constexpr (std::is_same_v<Real, float>) return {};
+  return rows_of<RecursiveRegularised, L, double>(CollisionOperator::RecursiveRegularised);
 }
-template KernelRows recursive_regularised_rows<BPLBM_LATTICE>();
+template KernelRows recursive_regularised_rows<BPLBM_LATTICE, BPLBM_REAL>();
 
 }  // namespace lbm

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 /// How a source file kernel_*.cpp lists the kernels that it compiles: those of one operator on the
-/// lattice BPLBM_LATTICE, once for each lattice of lbm_solver/CMakeLists.txt. So they compile side
-/// by side, and a first run in the plane need not wait for those in space.
+/// lattice BPLBM_LATTICE with populations of type BPLBM_REAL, once for each lattice and precision
+/// of lbm_solver/CMakeLists.txt. So they compile side by side, and a first run in the plane need
+/// not wait for those in space or in single precision.
 #pragma once
 
 #include "lbm_solver/collision/forcing.h"
@@ -20,13 +21,13 @@ struct KernelTableRow {
 };
 using KernelRows = std::vector<KernelTableRow>;
 
-template <class L>
+template <class L, class Real>
 KernelRows bgk_rows();
-template <class L>
+template <class L, class Real>
 KernelRows trt_rows();
-template <class L>
+template <class L, class Real>
 KernelRows central_moment_rows();
-template <class L>
+template <class L, class Real>
 KernelRows recursive_regularised_rows();
 
 template <class Collision, class Real>
@@ -47,19 +48,12 @@ void add_row(KernelRows& rows, CollisionOperator collision) {
 /// All rows of one lattice and precision of an operator that is a template on lattice, viscosity
 /// and force: every law of viscosity that is not constant shares one.
 template <template <class, class, class> class Collision, class L, class Real>
-void add_precision(KernelRows& rows, CollisionOperator collision) {
+KernelRows rows_of(CollisionOperator collision) {
+  KernelRows rows;
   add_row<Collision<L, ConstantViscosity, NoForce<L>>, Real>(rows, collision);
   add_row<Collision<L, ConstantViscosity, GuoForce<L>>, Real>(rows, collision);
   add_row<Collision<L, LocalViscosity, NoForce<L>>, Real>(rows, collision);
   add_row<Collision<L, LocalViscosity, GuoForce<L>>, Real>(rows, collision);
-}
-
-/// All rows of one lattice.
-template <template <class, class, class> class Collision, class L>
-KernelRows rows_of(CollisionOperator collision) {
-  KernelRows rows;
-  add_precision<Collision, L, double>(rows, collision);
-  add_precision<Collision, L, float>(rows, collision);
   return rows;
 }
 

@@ -9,22 +9,26 @@
 namespace lbm {
 namespace {
 
-template <class... Lattice>
-KernelRows all_rows() {
+/// The kernels of a lattice L with populations of type Real.
+template <class L, class Real>
+struct Kernels {};
+
+template <class... L, class... Real>
+KernelRows all_rows(Kernels<L, Real>...) {
   KernelRows rows;
   const auto add = [&](const KernelRows& part) {
     rows.insert(rows.end(), part.begin(), part.end());
   };
-  (add(bgk_rows<Lattice>()), ...);
-  (add(trt_rows<Lattice>()), ...);
-  (add(central_moment_rows<Lattice>()), ...);
-  (add(recursive_regularised_rows<Lattice>()), ...);
+  (add(bgk_rows<L, Real>()), ...);
+  (add(trt_rows<L, Real>()), ...);
+  (add(central_moment_rows<L, Real>()), ...);
+  (add(recursive_regularised_rows<L, Real>()), ...);
   return rows;
 }
 
-/// Of the lattices that this program is built with (lbm_solver/CMakeLists.txt).
+/// Those that this program is built with (lbm_solver/CMakeLists.txt).
 const KernelRows& table() {
-  static const KernelRows all = all_rows<BPLBM_LATTICES>();
+  static const KernelRows all = all_rows(BPLBM_KERNELS);
   return all;
 }
 
@@ -48,13 +52,14 @@ std::unique_ptr<Kernel> make_kernel(const KernelChoice& c) {
                               .local_viscosity = c.local_viscosity(),
                               .force = c.force,
                               .make = nullptr};
-  bool lattice_is_there = false;
+  bool built = false;
   for (const KernelTableRow& row : table()) {
     if (same(row, wanted)) return row.make(c);
-    lattice_is_there |= row.lattice == wanted.lattice;
+    built |= row.lattice == wanted.lattice && row.precision == wanted.precision;
   }
-  if (!lattice_is_there)
-    throw InputError("this program was built without the lattice " + name_of(wanted.lattice),
+  if (!built)
+    throw InputError(fmt::format("this program was built without the lattice {} in {} precision",
+                                 name_of(wanted.lattice), name_of(wanted.precision)),
                      "take lbm, which has all of them; tools/build makes it");
   std::string known;
   for (const KernelTableRow& row : table()) known += "\n  " + text(row);

@@ -7,10 +7,10 @@ namespace lbm {
 template <class L, class Viscosity, class Force>
 using Trt = TwoRates<L, MagicRate, Viscosity, Force>;
 
-template <class L>
+template <class L, class Real>
 KernelRows trt_rows() {
-  return rows_of<Trt, L>(CollisionOperator::Trt);
+  return rows_of<Trt, L, Real>(CollisionOperator::Trt);
 }
-template KernelRows trt_rows<BPLBM_LATTICE>();
+template KernelRows trt_rows<BPLBM_LATTICE, BPLBM_REAL>();
 
 }  // namespace lbm

@@ -26,17 +26,20 @@ NaiveLattice::NaiveLattice(const Domain& domain, const lbm::KernelChoice& choice
     for (int b = 0; b < 3; ++b)
       for (int c = 0; c < (l_.D == 3 ? 3 : 1); ++c)
         if (l_.Q != 19 || a * b * c == 0) powers_.push_back({a, b, c});
-  Matrix hermite(l_.Q, l_.Q);
+  Matrix hermite(l_.Q, l_.Q), moments(l_.Q, l_.Q);
   for (int m = 0; m < l_.Q; ++m)
     for (int i = 0; i < l_.Q; ++i) {
-      double polynomial = 1.0;
+      double polynomial = 1.0, monomial = 1.0;
       for (int a = 0; a < 3; ++a) {
         const double v = l_.c[i][a];
         polynomial *= powers_[m][a] == 0 ? 1.0 : powers_[m][a] == 1 ? v : v * v - 1.0 / 3;
+        monomial *= powers_[m][a] == 0 ? 1.0 : powers_[m][a] == 1 ? v : v * v;
       }
       hermite(m, i) = polynomial;
+      moments(m, i) = monomial;
     }
   from_hermite_ = hermite.inverse();
+  from_moments_ = moments.inverse();
 }
 
 Vec3 NaiveLattice::c(int i) const {
@@ -109,24 +112,23 @@ Eigen::Matrix3d NaiveLattice::stress(const Cell& f, const Cell& eq, const Vec3& 
   return q;
 }
 
-/// Relaxes central moments, each a sum over all directions, and solves for the populations that
-/// have the new ones.
+/// Relaxes central moments, each a sum over all directions. The populations that have the new ones
+/// are those whose moments about rest follow from them by the binomial theorem.
 Cell NaiveLattice::central_moments(const Cell& f, double rho, const Vec3& u, double omega) const {
   const Vec3 force = body_force();
   const int n = l_.Q;
-  Matrix to_moments(n, n);
-  Vector populations(n), after = Vector::Zero(n);
+  Vector before = Vector::Zero(n), after = Vector::Zero(n);
   for (int i = 0; i < n; ++i) {
-    populations[i] = f[i];
-    const Vec3 v = c(i) - u;
+    double power[3][3];
+    for (int a = 0; a < 3; ++a) {
+      const double v = l_.c[i][a] - u[a];
+      power[a][0] = 1.0, power[a][1] = v, power[a][2] = v * v;
+    }
     for (int m = 0; m < n; ++m) {
-      double product = 1.0;
-      for (int a = 0; a < 3; ++a)
-        for (int times = 0; times < powers_[m][a]; ++times) product *= v[a];
-      to_moments(m, i) = product;
+      const auto& p = powers_[m];
+      before[m] += f[i] * power[0][p[0]] * power[1][p[1]] * power[2][p[2]];
     }
   }
-  const Vector before = to_moments * populations;
   double trace = 0.0;
   for (int m = 0; m < n; ++m) {
     const auto& p = powers_[m];
@@ -147,7 +149,19 @@ Cell NaiveLattice::central_moments(const Cell& f, double rho, const Vec3& u, dou
     if (order == 2 && ones == 0) after[m] += (1.0 - omega) * (before[m] - trace / l_.D);
     if (order == 2 && ones == 2) after[m] = (1.0 - omega) * before[m];
   }
-  populations = to_moments.partialPivLu().solve(after);
+  Vector about_rest = Vector::Zero(n);  // ∏ c_a^p_a of c_a = (c_a - u_a) + u_a
+  for (int m = 0; m < n; ++m)
+    for (int k = 0; k < n; ++k) {
+      const auto &p = powers_[m], &part = powers_[k];
+      if (part[0] > p[0] || part[1] > p[1] || part[2] > p[2]) continue;
+      double product = after[k];
+      for (int a = 0; a < 3; ++a) {
+        if (p[a] - part[a] == 1) product *= p[a] * u[a];
+        if (p[a] - part[a] == 2) product *= u[a] * u[a];
+      }
+      about_rest[m] += product;
+    }
+  const Vector populations = from_moments_ * about_rest;
   Cell out{};
   for (int i = 0; i < n; ++i) out[i] = populations[i];
   return out;

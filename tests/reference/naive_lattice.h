@@ -75,6 +75,7 @@ class NaiveLattice {
   const lbm::Lattice& l_;
   std::vector<std::array<int, 3>> powers_;  // of the moments that the lattice has
   Matrix from_hermite_;                     // populations from moments of Hermite polynomials
+  Matrix from_moments_;                     // and from those of monomials
   std::vector<Cell> f_;
   std::vector<NaiveCover> cover_;
   std::vector<Vec3> force_;

@@ -9,32 +9,32 @@ namespace lbm {
 template <class L, class Viscosity, class Force>
 using Trt = TwoRates<L, MagicRate, Viscosity, Force>;
 
-template <class L>
+template <class L, class Real>
 KernelRows trt_rows() {
   KernelRows rows;
   add_row<Trt<L, ConstantViscosity, NoForce<L>>, double>(rows, CollisionOperator::Trt);
   return rows;
 }
-template <class L>
+template <class L, class Real>
 KernelRows bgk_rows() {
   return {};
 }
-template <class L>
+template <class L, class Real>
 KernelRows central_moment_rows() {
   return {};
 }
-template <class L>
+template <class L, class Real>
 KernelRows recursive_regularised_rows() {
   return {};
 }
 
-template KernelRows bgk_rows<D2Q9>();
-template KernelRows bgk_rows<D3Q19>();
-template KernelRows trt_rows<D2Q9>();
-template KernelRows trt_rows<D3Q19>();
-template KernelRows central_moment_rows<D2Q9>();
-template KernelRows central_moment_rows<D3Q19>();
-template KernelRows recursive_regularised_rows<D2Q9>();
-template KernelRows recursive_regularised_rows<D3Q19>();
+template KernelRows bgk_rows<D2Q9, double>();
+template KernelRows bgk_rows<D3Q19, double>();
+template KernelRows trt_rows<D2Q9, double>();
+template KernelRows trt_rows<D3Q19, double>();
+template KernelRows central_moment_rows<D2Q9, double>();
+template KernelRows central_moment_rows<D3Q19, double>();
+template KernelRows recursive_regularised_rows<D2Q9, double>();
+template KernelRows recursive_regularised_rows<D3Q19, double>();
 
 }  // namespace lbm

@@ -10,16 +10,15 @@ import json
 import os
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 import time
 
-from bplbm import blanks, early_end, output_folder, placement, solid_alone
+from bplbm import blanks, early_end, output_folder, placement, programs, solid_alone
 from bplbm.logs import OWN_HINT, warning_lines
 from bplbm.mpi_job import STOPPED, MpiJob, environment
 from bplbm.options import arguments, fail, label, list_scenes, out_folder, scene_files
-from bplbm.project import BIN, INSTALLED, TOOLS, fluid_program, missing_cpu_features, tool
+from bplbm.project import BIN, TOOLS, fluid_program, tool
 from bplbm.written import error_text, with_unit
 
 OUT_OF_TOLERANCE = 4
@@ -49,7 +48,7 @@ def solid_command(args, out):
     if args.engine_command:
         places = {"{folder}": str(args.scene.folder), "{out}": str(out)}
         return [re.sub(r"\{folder\}|\{out\}", lambda found: places[found[0]], word) for word in args.engine_command]
-    program = engine_program(args.engine)
+    program = programs.engine_program(args.engine)
     if args.engine not in WITH_SCRIPT:
         return ["/usr/bin/python3", str(program)] if program.suffix == ".py" else [str(program)]
     script = args.scene.script(args.engine)
@@ -57,12 +56,6 @@ def solid_command(args, out):
         fail(f"{args.scene.name} has no {script.name}; write one, or leave --engine out")
     common = ["-in", str(script), "-log", str(out / f"{args.engine}.log"), "-screen", "none"]
     return [str(program), *common] + (["-var", "out_folder", str(out)] if args.engine == "liggghts" else [])
-
-
-def engine_program(engine):
-    """The file of an engine: tools/engines/NAME/engine.py, or where there is none what is compiled as NAME_engine."""
-    script = TOOLS / "engines" / engine / "engine.py"
-    return script if script.exists() else BIN / (engine if engine == "liggghts" else f"{engine}_engine")
 
 
 def take_folder(args, out, look=False):
@@ -181,22 +174,43 @@ def add_warnings(out):
     path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n")
 
 
-def draw(scene, out, until):
+def plot(scene, out, **streams):
+    """Runs the scene's plot.py, which draws and judges. Returns what subprocess.run does, or None where there is none."""
     script = scene.folder / "plot.py"
     if not script.exists():
-        return
+        return None
     env = dict(os.environ, PYTHONPATH=str(TOOLS), MPLBACKEND="Agg")
-    job = subprocess.run(["/usr/bin/python3", str(script), str(out)], env=env, check=False, stderr=subprocess.PIPE,
-                         text=True, errors="replace")
+    return subprocess.run(["/usr/bin/python3", str(script), str(out)], env=env, check=False, stderr=subprocess.PIPE,
+                          text=True, errors="replace", **streams)
+
+
+def draw(scene, out, until):
+    job = plot(scene, out)
+    if job is None:
+        return
     if job.returncode == 0:
         sys.stderr.write(job.stderr)
         return
     (out / "plot.log").write_text(job.stderr)
     lines = job.stderr.strip().splitlines() or [f"it ended with code {job.returncode}"]
     made = json.loads((out / "summary.json").read_text())["physical_seconds"]
-    fail(f"{script} cannot judge and draw this run, which made {made:.6g} s: {lines[-1]}; "
+    fail(f"{scene.folder / 'plot.py'} cannot judge and draw this run, which made {made:.6g} s: {lines[-1]}; "
          f"{'a run that --until has cut short may lack what it needs: leave --until out' if until else 'correct it'} "
          f"(its whole message is in {out / 'plot.log'}; the run's numbers are complete)", FAULT)
+
+
+def first_look(args, out, others):
+    """Pictures and page of the main run before its comparison runs, which may take long. All are drawn again with these;
+    what is wrong with plot.py is said then."""
+    job = plot(args.scene, out, stdout=subprocess.DEVNULL)
+    if job is None or job.returncode:
+        return
+    if not args.no_page:
+        make_page(args, out)
+    for picture in sorted(out.glob("*.png")):
+        print(f"run | picture {picture}")
+    print(f"run | {len(others)} comparison run{'s follow' if len(others) > 1 else ' follows'}; then the results, and all pictures "
+          "again (--no-study leaves them out)", flush=True)
 
 
 def make_page(args, out, failed=0):
@@ -266,37 +280,6 @@ def study(args, runs, out):
     return 0
 
 
-def programs(args):
-    """What has to be built for a run. The kernels in space take most of the time: a run in the plane waits for them only
-    where they have been built before."""
-    needed = []
-    if not args.scene.is_solid_alone:
-        needed.append("lbm_2d" if args.scene.dimension == 2 and not (BIN / "lbm").exists() else "lbm")
-    program = engine_program(args.engine)
-    used = not args.engine_command and (args.scene.is_coupled or args.scene.is_solid_alone)
-    if program.suffix != ".py" and (used or args.engine != "liggghts"):
-        needed.append(program.name)
-    return needed
-
-
-def check_programs(args):
-    """Refuses a run whose programs are not there, or were compiled for another processor."""
-    if missing := missing_cpu_features():
-        fail(f"these programs were compiled for a processor with {', '.join(missing)}, which this machine lacks; "
-             "install a package for this processor, or build from the sources")
-    if (args.no_build or INSTALLED) and not fluid_program().exists():
-        what = "install the package again" if INSTALLED else "leave --no-build out, or run tools/build"
-        fail(f"{BIN / 'lbm'} is missing: {what}")
-    if args.no_build and args.engine == "liggghts" and not args.engine_command and args.scene.is_coupled \
-            and not (BIN / "liggghts").exists():
-        fail(f"{BIN / 'liggghts'} is missing: run tools/build, or take an engine that does without LIGGGHTS "
-             "(--engine reference or python, --engine-command)")
-    if INSTALLED and args.engine != "liggghts" and not engine_program(args.engine).exists():
-        fail(f"--engine {args.engine} is not part of the package; build BPLBM from its sources for it")
-    if shutil.which("mpirun") is None:
-        fail(f"mpirun not found; {'install openmpi-bin' if INSTALLED else 'run tools/install'}")
-
-
 def check_blanks(args, out):
     """Refuses folders with a blank in their name where the script of the solid needs them."""
     scene = args.scene
@@ -316,9 +299,9 @@ def main():
     check_blanks(args, out)
     if args.look:
         take_folder(args, out, look=True)
-        print(*programs(args))
+        print(*programs.needed(args))
         return 0
-    check_programs(args)
+    programs.check(args)
     others = comparison_runs(args)
     hold = take_folder(args, out)
     before = output_folder.files(out)
@@ -331,7 +314,10 @@ def main():
 
 def go(args, others, out):
     """The job, its comparison runs, pictures and results. Returns the exit code."""
-    code = run_job(args, out) or study(args, others, out)
+    code = run_job(args, out)
+    if others and not code:
+        first_look(args, out, others)
+        code = study(args, others, out)
     if not out.is_dir():
         print(f"run | error | {out} has been moved or deleted; leave an output folder where it is until its run has ended, and "
               "then make this run again", file=sys.stderr)

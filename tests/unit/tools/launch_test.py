@@ -15,7 +15,7 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from bplbm import command, mpi_job, output_folder, placement, result, run, solid_alone, told_once  # noqa: E402
+from bplbm import command, mpi_job, output_folder, placement, programs, result, run, solid_alone, told_once  # noqa: E402
 from bplbm.options import arguments, scene_files  # noqa: E402
 from bplbm.scenes import Scene, find, scenes  # noqa: E402
 
@@ -117,6 +117,19 @@ class Launch(unittest.TestCase):
                     mock.patch.dict("os.environ", environment, clear=True):
                 self.assertEqual(run.colored("pass", 32), expected)
 
+    def test_pictures_are_there_before_the_comparison_runs(self):
+        """A plot.py that fails is told at the end, when it is run again: the comparison runs are made all the same."""
+        for code, seen in ((0, ["| picture", "3 comparison runs follow", "compared"]), (1, ["compared"])):
+            def plot(scene, out, code=code, **_):
+                (out / "field.png").touch()
+                return subprocess.CompletedProcess([], code)
+
+            with mock.patch.object(run, "plot", plot), mock.patch.object(run, "make_page"), \
+                    mock.patch.object(run, "study", lambda *_: print("compared")):
+                ended, text = self.run_main("settling_disc")
+            self.assertEqual(ended, 0)
+            self.assertEqual(re.findall(r"\| picture|3 comparison runs follow|compared", text.split("run | pass")[0]), seen)
+
     def test_the_codes_of_the_programs_pass_through(self):
         for job_code in (1, 2, 3):
             self.assertEqual(self.run_main("settling_disc", "--no-study", job_code=job_code)[0], job_code)
@@ -126,6 +139,7 @@ class Launch(unittest.TestCase):
         for words, there, targets in (
                 (["settling_disc"], False, ["lbm_2d", "liggghts"]), (["settling_disc"], True, ["lbm", "liggghts"]),
                 (["ten_cate_sphere"], False, ["lbm", "liggghts"]), (["cylinder_flow"], False, ["lbm_2d"]),
+                (["cylinder_flow", "--overlay", str(ROOT / "cases" / "sphere_array" / "variant-single.toml")], False, ["lbm"]),
                 (["settling_disc", "--engine", "lammps"], True, ["lbm", "lammps_engine"]),
                 (["settling_disc", "--engine", "c"], True, ["lbm", "c_engine"]),
                 (["settling_disc", "--engine", "python"], True, ["lbm"]),
@@ -134,8 +148,8 @@ class Launch(unittest.TestCase):
                 lbm = pathlib.Path(folder) / "lbm"
                 if there:
                     lbm.touch()
-                with mock.patch.object(run, "BIN", lbm.parent):
-                    self.assertEqual(run.programs(arguments(words)), targets, words)
+                with mock.patch.object(programs, "BIN", lbm.parent):
+                    self.assertEqual(programs.needed(arguments(words)), targets, words)
 
     def test_unknown_names_are_listed(self):
         for words, expected in ((["nothing"], "settling_disc"),

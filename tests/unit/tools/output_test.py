@@ -185,7 +185,7 @@ class Command(InFolder):
             out.rename(self.folder / "elsewhere")
             return 1
 
-        with mock.patch.object(run, "run_job", vanish), mock.patch.object(run, "check_programs"):
+        with mock.patch.object(run, "run_job", vanish), mock.patch.object(run.programs, "check"):
             code, text = self.main("settling_disc", "--out", str(self.out), "--no-study")
         self.assertEqual(code, 1)
         self.assertIn(f"run | error | {self.out} has been moved or deleted", text)
