@@ -8,8 +8,10 @@ namespace lbm {
 /// flows.
 template <class L, class Real>
 KernelRows recursive_regularised_rows() {
-  if constexpr (std::is_same_v<Real, float>) return {};
-  return rows_of<RecursiveRegularised, L, double>(CollisionOperator::RecursiveRegularised);
+  if constexpr (std::is_same_v<Real, double>)
+    return rows_of<RecursiveRegularised, L, Real>(CollisionOperator::RecursiveRegularised);
+  else
+    return {};
 }
 template KernelRows recursive_regularised_rows<BPLBM_LATTICE, BPLBM_REAL>();
 

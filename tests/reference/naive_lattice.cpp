@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <stdexcept>
 
 #include "lbm_solver/immersed/solid_term.h"
 #include "lbm_solver/viscosity/relaxation_table.h"
@@ -112,23 +113,29 @@ Eigen::Matrix3d NaiveLattice::stress(const Cell& f, const Cell& eq, const Vec3& 
   return q;
 }
 
-/// Relaxes central moments, each a sum over all directions. The populations that have the new ones
-/// are those whose moments about rest follow from them by the binomial theorem.
+/// Relaxes central moments, each a sum over all directions. The moments about rest follow from the
+/// new ones by the binomial theorem, and the populations from these; that they have the new central
+/// moments is seen by summing once more.
 Cell NaiveLattice::central_moments(const Cell& f, double rho, const Vec3& u, double omega) const {
   const Vec3 force = body_force();
   const int n = l_.Q;
-  Vector before = Vector::Zero(n), after = Vector::Zero(n);
-  for (int i = 0; i < n; ++i) {
-    double power[3][3];
-    for (int a = 0; a < 3; ++a) {
-      const double v = l_.c[i][a] - u[a];
-      power[a][0] = 1.0, power[a][1] = v, power[a][2] = v * v;
+  const auto moments_of = [&](const auto& populations) {
+    Vector moments = Vector::Zero(n);
+    for (int i = 0; i < n; ++i) {
+      double power[3][3];
+      for (int a = 0; a < 3; ++a) {
+        const double v = l_.c[i][a] - u[a];
+        power[a][0] = 1.0, power[a][1] = v, power[a][2] = v * v;
+      }
+      for (int m = 0; m < n; ++m) {
+        const auto& p = powers_[m];
+        moments[m] += populations[i] * power[0][p[0]] * power[1][p[1]] * power[2][p[2]];
+      }
     }
-    for (int m = 0; m < n; ++m) {
-      const auto& p = powers_[m];
-      before[m] += f[i] * power[0][p[0]] * power[1][p[1]] * power[2][p[2]];
-    }
-  }
+    return moments;
+  };
+  const Vector before = moments_of(f);
+  Vector after = Vector::Zero(n);
   double trace = 0.0;
   for (int m = 0; m < n; ++m) {
     const auto& p = powers_[m];
@@ -162,6 +169,8 @@ Cell NaiveLattice::central_moments(const Cell& f, double rho, const Vec3& u, dou
       about_rest[m] += product;
     }
   const Vector populations = from_moments_ * about_rest;
+  if ((moments_of(populations) - after).cwiseAbs().maxCoeff() > 1e-12)
+    throw std::logic_error("populations without the central moments that they were made for");
   Cell out{};
   for (int i = 0; i < n; ++i) out[i] = populations[i];
   return out;

@@ -2,9 +2,9 @@
 
 import shutil
 
-from bplbm import solid_alone
-from bplbm.options import fail, scene_files
+from bplbm.options import fail
 from bplbm.project import BIN, INSTALLED, TOOLS, fluid_program, missing_cpu_features
+from bplbm.toml_text import read_laid_over
 
 
 def engine_program(engine):
@@ -14,12 +14,15 @@ def engine_program(engine):
 
 
 def lbm_2d_is_enough(args):
-    """Whether a scene is in the plane and in double precision. A file that cannot be read is lbm's to complain of."""
-    try:
-        precision = solid_alone.read(scene_files(args))["numerics"]["precision"]
-    except (ValueError, KeyError, TypeError):
-        precision = "double"
-    return args.scene.dimension == 2 and precision == "double"
+    """Whether a scene is in the plane, and no file of it or beside it asks for single precision: its comparison runs take
+    the same program. A file that cannot be read is lbm's to complain of."""
+    def is_single(path):
+        try:
+            return read_laid_over([path])["numerics"]["precision"] == "single"
+        except (OSError, ValueError, KeyError, TypeError):
+            return False
+
+    return args.scene.dimension == 2 and not any(map(is_single, [*args.scene.folder.glob("*.toml"), *args.overlay]))
 
 
 def needed(args):

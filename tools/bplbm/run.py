@@ -175,7 +175,8 @@ def add_warnings(out):
 
 
 def plot(scene, out, **streams):
-    """Runs the scene's plot.py, which draws and judges. Returns what subprocess.run does, or None where there is none."""
+    """Runs the scene's plot.py, which draws and judges. Returns what subprocess.run does, or None where the scene has no
+    plot.py."""
     script = scene.folder / "plot.py"
     if not script.exists():
         return None
@@ -199,18 +200,35 @@ def draw(scene, out, until):
          f"(its whole message is in {out / 'plot.log'}; the run's numbers are complete)", FAULT)
 
 
-def first_look(args, out, others):
-    """Pictures and page of the main run before its comparison runs, which may take long. All are drawn again with these;
-    what is wrong with plot.py is said then."""
+def first_look(args, out):
+    """Pictures and page of the main run before its comparison runs, which may take long. They are drawn again after these.
+    An error of plot.py is reported then. Nothing is drawn where comparison runs of an earlier call are still there."""
+    if (out / "study").exists():
+        return
     job = plot(args.scene, out, stdout=subprocess.DEVNULL)
     if job is None or job.returncode:
         return
-    if not args.no_page:
+    mark_early_end(args, out)
+    if wants_page(args):
         make_page(args, out)
     for picture in sorted(out.glob("*.png")):
         print(f"run | picture {picture}")
-    print(f"run | {len(others)} comparison run{'s follow' if len(others) > 1 else ' follows'}; then the results, and all pictures "
-          "again (--no-study leaves them out)", flush=True)
+
+
+def announce(args, others):
+    """Says how many comparison runs follow. Those that the user has asked for by a choice are not left out."""
+    asked_for = any(value == "all" for _, value in arguments(args.words).own)
+    print(f"run | {len(others)} comparison run{'s follow' if len(others) > 1 else ' follows'}, then the results and all pictures"
+          f"{'' if asked_for else '; --no-study leaves comparison runs out'}", flush=True)
+
+
+def mark_early_end(args, out):
+    if not args.judge:
+        early_end.mark(out, scene_files(args))
+
+
+def wants_page(args):
+    return not args.no_page and not args.scene.is_solid_alone
 
 
 def make_page(args, out, failed=0):
@@ -276,6 +294,8 @@ def study(args, runs, out):
         code = run_job(run, folder)
         del hold
         if code:
+            print(f"run | error | the comparison run {' '.join(words)} stopped with exit code {code}; its logs are in {folder}. "
+                  f"The main run is complete in {out}", file=sys.stderr)
             return code
     return 0
 
@@ -316,8 +336,10 @@ def go(args, others, out):
     """The job, its comparison runs, pictures and results. Returns the exit code."""
     code = run_job(args, out)
     if others and not code:
-        first_look(args, out, others)
-        code = study(args, others, out)
+        first_look(args, out)
+        announce(args, others)
+        if code := study(args, others, out):
+            return code
     if not out.is_dir():
         print(f"run | error | {out} has been moved or deleted; leave an output folder where it is until its run has ended, and "
               "then make this run again", file=sys.stderr)
@@ -330,15 +352,14 @@ def go(args, others, out):
         if (out / "fault.h5").exists():
             print("run | states of the fault are kept (fault.*): --restart=fault goes on from them if both sides' are",
                   file=sys.stderr)
-        if code in (1, 3) and not args.no_page and not args.scene.is_solid_alone:
+        if code in (1, 3) and wants_page(args):
             make_page(args, out, code)
         return code
     try:
         draw(args.scene, out, args.until is not None)
-        if not args.judge:
-            early_end.mark(out, scene_files(args))
+        mark_early_end(args, out)
     finally:  # a plot.py that fails leaves the page, which needs none
-        if not args.no_page and not args.scene.is_solid_alone:
+        if wants_page(args):
             make_page(args, out)
     good = judge(out)
     print(f"run | outputs in {out}")

@@ -15,7 +15,7 @@ from unittest import mock
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
 
-from bplbm import command, mpi_job, output_folder, placement, programs, result, run, solid_alone, told_once  # noqa: E402
+from bplbm import command, mpi_job, output_folder, placement, result, run, solid_alone, told_once  # noqa: E402
 from bplbm.options import arguments, scene_files  # noqa: E402
 from bplbm.scenes import Scene, find, scenes  # noqa: E402
 
@@ -65,14 +65,14 @@ class ToldOnce(unittest.TestCase):
 
 class Launch(unittest.TestCase):
     def run_main(self, *arguments, job_code=0, value=1.0):
-        """Exit code and output of tools/run with a job that is only pretended."""
+        """Exit code and output of tools/run with jobs that are only pretended. job_code: of each, or of one after another."""
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
 
             def job(args, place):
                 (out / "summary.json").write_text(json.dumps(
                     {"results": [result("number", value, "1", 1.0, "test", 0.03)]}))
-                return job_code
+                return job_code if isinstance(job_code, int) else next(job_code)
 
             text = io.StringIO()
             with mock.patch.object(run, "run_job", job), mock.patch.object(run, "draw"), \
@@ -118,38 +118,35 @@ class Launch(unittest.TestCase):
                 self.assertEqual(run.colored("pass", 32), expected)
 
     def test_pictures_are_there_before_the_comparison_runs(self):
-        """A plot.py that fails is told at the end, when it is run again: the comparison runs are made all the same."""
-        for code, seen in ((0, ["| picture", "3 comparison runs follow", "compared"]), (1, ["compared"])):
+        """A plot.py that fails is reported at the end, when it is run again: the comparison runs are made all the same."""
+        follow, hint = "comparison runs? follow", "--no-study leaves"
+        for words, code, seen in ((["settling_disc"], 0, ["page", "| picture", "3 comparison runs follow", hint, "compared"]),
+                                  (["settling_disc", "--no-page"], 0, ["| picture", "3 comparison runs follow", hint, "compared"]),
+                                  (["settling_disc"], 1, ["3 comparison runs follow", hint, "compared"]),
+                                  (["bonded_compression"], 0, ["| picture", "35 comparison runs follow", hint, "compared"]),
+                                  (["disc_migration", "--start", "all"], 0, ["page", "| picture", "4 comparison runs follow", "compared"])):
             def plot(scene, out, code=code, **_):
                 (out / "field.png").touch()
                 return subprocess.CompletedProcess([], code)
 
-            with mock.patch.object(run, "plot", plot), mock.patch.object(run, "make_page"), \
+            with mock.patch.object(run, "plot", plot), mock.patch.object(run, "make_page", lambda *_: print("page")), \
                     mock.patch.object(run, "study", lambda *_: print("compared")):
-                ended, text = self.run_main("settling_disc")
+                ended, text = self.run_main(*words)
             self.assertEqual(ended, 0)
-            self.assertEqual(re.findall(r"\| picture|3 comparison runs follow|compared", text.split("run | pass")[0]), seen)
+            before = text[:text.index("compared") + len("compared")]
+            self.assertEqual(re.findall(rf"page|\| picture|\d+ {follow}|{hint}|compared", before), seen)
+
+    def test_a_comparison_run_that_fails_leaves_the_page_of_the_main_run(self):
+        codes, pages = iter((0, 3)), []
+        with mock.patch.object(run, "plot", lambda *_, **__: subprocess.CompletedProcess([], 0)), \
+                mock.patch.object(run, "make_page", lambda *about: pages.append(about[2:])):
+            code, text = self.run_main("settling_disc", job_code=codes)
+        self.assertEqual((code, pages), (3, [()]))
+        self.assertIn("the comparison run --variant d10 stopped with exit code 3; its logs are in ", text)
 
     def test_the_codes_of_the_programs_pass_through(self):
         for job_code in (1, 2, 3):
             self.assertEqual(self.run_main("settling_disc", "--no-study", job_code=job_code)[0], job_code)
-
-    def test_only_what_a_run_needs_is_built(self):
-        """tools/run builds what --look prints."""
-        for words, there, targets in (
-                (["settling_disc"], False, ["lbm_2d", "liggghts"]), (["settling_disc"], True, ["lbm", "liggghts"]),
-                (["ten_cate_sphere"], False, ["lbm", "liggghts"]), (["cylinder_flow"], False, ["lbm_2d"]),
-                (["cylinder_flow", "--overlay", str(ROOT / "cases" / "sphere_array" / "variant-single.toml")], False, ["lbm"]),
-                (["settling_disc", "--engine", "lammps"], True, ["lbm", "lammps_engine"]),
-                (["settling_disc", "--engine", "c"], True, ["lbm", "c_engine"]),
-                (["settling_disc", "--engine", "python"], True, ["lbm"]),
-                (["settling_disc", "--engine-command", "true"], True, ["lbm"])):
-            with tempfile.TemporaryDirectory() as folder:
-                lbm = pathlib.Path(folder) / "lbm"
-                if there:
-                    lbm.touch()
-                with mock.patch.object(programs, "BIN", lbm.parent):
-                    self.assertEqual(programs.needed(arguments(words)), targets, words)
 
     def test_unknown_names_are_listed(self):
         for words, expected in ((["nothing"], "settling_disc"),
