@@ -32,7 +32,7 @@ size = {size}
 density = 1000.0
 kinematic_viscosity = 1e-5
 gravity = {gravity}
-velocity_scale = 0.08
+velocity_scale = 0.12
 [particles]
 diameter = {diameter}
 density = 1400.0
