@@ -294,8 +294,9 @@ def study(args, runs, out):
         code = run_job(run, folder)
         del hold
         if code:
-            print(f"run | error | the comparison run {' '.join(words)} stopped with exit code {code}; its logs are in {folder}. "
-                  f"The main run is complete in {out}", file=sys.stderr)
+            if folder.is_dir():
+                print(f"run | error | the comparison run {' '.join(words)} stopped with exit code {code}; its logs are in "
+                      f"{folder}. The main run is complete in {out}", file=sys.stderr)
             return code
     return 0
 
@@ -338,7 +339,8 @@ def go(args, others, out):
     if others and not code:
         first_look(args, out)
         announce(args, others)
-        if code := study(args, others, out):
+        code = study(args, others, out)
+        if code and out.is_dir():
             return code
     if not out.is_dir():
         print(f"run | error | {out} has been moved or deleted; leave an output folder where it is until its run has ended, and "

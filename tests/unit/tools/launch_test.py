@@ -70,6 +70,7 @@ class Launch(unittest.TestCase):
             out = pathlib.Path(folder)
 
             def job(args, place):
+                place.mkdir(parents=True, exist_ok=True)
                 (out / "summary.json").write_text(json.dumps(
                     {"results": [result("number", value, "1", 1.0, "test", 0.03)]}))
                 return job_code if isinstance(job_code, int) else next(job_code)

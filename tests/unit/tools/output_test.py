@@ -191,6 +191,20 @@ class Command(InFolder):
         self.assertIn(f"run | error | {self.out} has been moved or deleted", text)
         self.assertNotIn("Traceback", text)
 
+    def test_a_folder_that_vanishes_during_a_comparison_run(self):
+        def vanish(_args, out):
+            if out == self.out:
+                return 0
+            self.out.rename(self.folder / "elsewhere")
+            return 1
+
+        with mock.patch.object(run, "run_job", vanish), mock.patch.object(run.programs, "check"), \
+                mock.patch.object(run, "first_look"):
+            code, text = self.main("settling_disc", "--out", str(self.out))
+        self.assertEqual(code, 1)
+        self.assertIn(f"run | error | {self.out} has been moved or deleted", text)
+        self.assertNotIn("The main run is complete", text)
+
     def test_a_run_that_its_plot_script_cannot_draw(self):
         (self.folder / "scene").mkdir()
         (self.folder / "scene" / "plot.py").write_text("[][0]\n")
